@@ -39,7 +39,7 @@ MeshFile pruned(const MeshFile& file) {
 }
 
 /// Assimp rounds a coordinate by a few units in the last place of its digits before and behind the point.
-bool areNear(const std::vector<float>& a, const std::vector<float>& b) {
+bool areNear(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size()) return false;
   for (size_t i = 0; i < a.size(); ++i) {
     if (std::abs(a[i] - b[i]) > 1e-6 * (std::abs(a[i]) + 1e-30)) return false;

@@ -1,9 +1,11 @@
 // What becomes of mesh files: nodes, faces and messages.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "mesh_texts.h"
 
 using namespace radar::tools;
+using radar::test::append;
 using radar::test::Contains;
 using radar::test::cornerBytes;
 using radar::test::gltf;
@@ -33,13 +35,6 @@ std::string writeNodes(const ScratchFolder& folder, const std::string& nodes) {
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 }  // namespace
-
-TEST_CASE("faces of more than three corners become a fan from their first corner, concave ones too") {
-  const ScratchFolder folder;
-  const MeshData mesh = readWhole(folder.write("a.obj", std::string(kSquare) + "v 0.1 0.1 0\nf 2 3 4 5 1\n"));
-  CHECK(corners(mesh) ==
-        std::vector<float>{1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, .1f, .1f, 0, 1, 0, 0, .1f, .1f, 0, 0, 0, 0});
-}
 
 TEST_CASE("duplicate vertices are not merged, and degenerate faces stay in place") {
   const ScratchFolder folder;
@@ -117,8 +112,7 @@ TEST_CASE("the message about a broken mesh file names the file, the place and wh
   const std::string square = kSquare, three = "0 0 0\n1 0 0\n0 1 0\n", rest = "v 1 0 0\nv 0 1 0\nf 1 2 3\n";
   const std::string large = "0 0 0\n1 0 0\n0 1e39 0\n3 0 1 2\n", got = " in the range of floats, got \"1e39\"";
   const std::string solid = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", off = "OFF\n3 1 0\n";
-  const std::string facet = solid + "vertex 1 0 0\nvertex 0 1 0\n",
-                    strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+  const std::string facet = solid + "vertex 1 0 0\nvertex 0 1 0\n";
   const struct {
     const char* name;
     std::string content, words, place{};
@@ -154,10 +148,6 @@ TEST_CASE("the message about a broken mesh file names the file, the place and wh
       // What a reader would have to leave out.
       {"four.stl", facet + "vertex 1 1 0\nendloop\nendfacet\nendsolid\n", "line 7: expected a facet of 3 vertices"},
       {"surface.obj", square + "f 1 2 3\ncstype bezier\nsurf 0 1 0 1 1 2 3\nend\n", "free-form", "line 7"},
-      {"strips.ply",
-       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" + strips +
-           "end_header\n" + three + "3 0 1 2\n",
-       "triangle strips"},
   };
   for (const auto& file : files) {
     CAPTURE(file.name);
@@ -195,6 +185,34 @@ TEST_CASE("quarter turns in a glTF file are exact, though floats cannot hold the
   CHECK(assembly.parts[0].fileFromMesh.m == std::array<double, 12>{0, 0, -1, 0.1, 1, 0, 0, 0.3, 0, -1, 0, 0});
   CHECK(assembly.parts[1].fileFromMesh.m == std::array<double, 12>{0, -3, 0, 0.1, 0, 0, 4, 0, -2, 0, 0, 0});
   CHECK(assembly.parts[2].fileFromMesh.m == std::array<double, 12>{0.1, 0, 0, 1, 0, 0.2, 0, 2, 0, 0, 0.3, 0.7});
+}
+
+TEST_CASE("triangle strips of a PLY file turn as their first triangles, and what only leads on is left out") {
+  const ScratchFolder folder;
+  const auto header = [](const std::string& format) {
+    return "ply\nformat " + format + " 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n" +
+           "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+  };
+  const std::vector<int> strip{0, 1, 2, 3, -1, 3, 4, 5, 5, 0, 0, 1, 2};
+  const std::vector<uint32_t> expected{0, 1, 2, 2, 1, 3, 3, 4, 5, 1, 0, 2};
+  std::string text = header("ascii") + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n5 0 0\n5 1 0\n13";
+  for (const int corner : strip) text += " " + std::to_string(corner);
+  CHECK(readWhole(folder.write("a.ply", text + "\n")).indices == expected);
+  std::string little = header("binary_little_endian"), big = header("binary_big_endian");
+  const auto add = [&](auto value) {
+    std::string bytes;
+    append(bytes, value);
+    little += bytes;
+    std::ranges::reverse(bytes);
+    big += bytes;
+  };
+  for (const float number : {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 5, 0, 0, 5, 1, 0}) add(number);
+  add(static_cast<int>(strip.size()));
+  for (const int corner : strip) add(corner);
+  CHECK(readWhole(folder.write("little.ply", little)).indices == expected);
+  CHECK(readWhole(folder.write("big.ply", big)).indices == expected);
+  CHECK_THAT(refusalOf(folder.write("b.ply", header("ascii") + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n5 0 0\n5 1 0\n3 0 1 6\n")),
+             Contains("tristrips 0: expected the number of a vertex, or -1, below 6, got \"6\""));
 }
 
 TEST_CASE("a binary PLY file that ends early is refused") {

@@ -65,6 +65,9 @@ class Reader {
 void MeshFile::Part::addFace(const std::vector<uint32_t>& corners) {
   if (corners.size() == 1) ++points;
   if (corners.size() == 2) ++lines;
+  if (corners.size() > 3) {
+    faces.push_back({static_cast<uint32_t>(indices.size() / 3), static_cast<uint32_t>(corners.size())});
+  }
   for (size_t k = 2; k < corners.size(); ++k) {
     indices.insert(indices.end(), {corners[0], corners[k - 1], corners[k]});
   }
@@ -76,6 +79,7 @@ std::string bytesOf(const MeshFile& file) {
   for (const MeshFile::Part& part : file.parts) {
     to.addList(part.positions);
     to.addList(part.indices);
+    to.addList(part.faces);
     to.add(part.points);
     to.add(part.lines);
   }
@@ -91,10 +95,11 @@ std::string bytesOf(const MeshFile& file) {
 MeshFile meshFileFrom(std::string_view bytes) {
   Reader from(bytes);
   MeshFile file;
-  file.parts.resize(from.count(4 * sizeof(uint64_t)));
+  file.parts.resize(from.count(5 * sizeof(uint64_t)));
   for (MeshFile::Part& part : file.parts) {
     from.takeList(part.positions);
     from.takeList(part.indices);
+    from.takeList(part.faces);
     from.take(part.points);
     from.take(part.lines);
   }

@@ -10,10 +10,14 @@
 namespace radar::tools {
 
 struct MeshFile {
-  /// Faces of more than three corners are already split into a fan from their first corner.
+  /// A face of more than three corners, which is a fan of triangles from its first corner.
+  struct Face {
+    uint32_t firstTriangle = 0, corners = 0;
+  };
   struct Part {
-    std::vector<float> positions;    ///< 3 per vertex; may be infinite or no number
+    std::vector<double> positions;   ///< 3 per vertex; may be infinite or no number
     std::vector<uint32_t> indices;   ///< 3 vertex numbers per triangle; may name vertices that do not exist
+    std::vector<Face> faces;         ///< whose fans may leave them
     uint64_t points = 0, lines = 0;  ///< which are no surface; their vertices are among the positions
 
     /// Adds a face, or counts it if it is a point or a line. `corners` are vertex numbers.

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "child/in_child.h"
+#include "import/faces.h"
 #include "import/readers.h"
 #include "import/regular_file.h"
 
@@ -65,7 +66,7 @@ MeshFile readInChild(const std::filesystem::path& file) {
   throw InputError(file.string(), "", "expected a mesh file that assimp reads, but it " + outcome.failed);
 }
 
-MeshFile openFile(const std::filesystem::path& file) {
+MeshFile readFile(const std::filesystem::path& file) {
   using Reader = MeshFile (*)(Text);
   static const std::map<std::string, Reader> kReaders{
       {".obj", readObj}, {".stl", readStl}, {".ply", readPly}, {".off", readOff}};
@@ -83,6 +84,35 @@ MeshFile openFile(const std::filesystem::path& file) {
   std::string_view text = content;
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   return reader->second({name, text});
+}
+
+/// What stands in the file, with its faces split.
+MeshFile openFile(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  MeshFile file = readFile(path);
+  OddFaces odd;
+  for (MeshFile::Part& part : file.parts) splitFaces(path.string(), part, odd);
+  const std::string name = printable(path.string());
+  if (odd.bent > 0) {
+    std::ostringstream most;
+    most << odd.most;
+    warnings.push_back(name + ": the corners of " + counted(odd.bent, "face") + " do not lie in a plane, by up to " +
+                       most.str() + ": their triangles may differ from those of other programs");
+  }
+  if (odd.crossing > 0) {
+    warnings.push_back(name + ": " +
+                       counted(odd.crossing, "face crosses itself and is", "faces cross themselves and are") +
+                       " split into a fan from the first corner");
+  }
+  return file;
+}
+
+/// As transformPoint() places a vertex.
+std::array<double, 3> placed(const Transform& pose, const double* p) {
+  const auto& m = pose.m;
+  std::array<double, 3> result{};
+  for (size_t i = 0; i < 3; ++i)
+    result[i] = ((m[4 * i] * p[0] + m[4 * i + 1] * p[1]) + m[4 * i + 2] * p[2]) + m[4 * i + 3];
+  return result;
 }
 
 /// The triangles of nodes of a file, as one mesh.
@@ -105,8 +135,8 @@ void Collector::add(const MeshFile::Node& node, const Transform& meshFromNode) {
 void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, const std::string& place) {
   const size_t first = mesh.vertexCount(), count = part.positions.size() / 3;
   for (size_t i = 0; i < count; ++i) {
-    const float* vertex = &part.positions[3 * i];
-    for (const double coordinate : transformPoint(meshFromPart, vertex)) {
+    const double* vertex = &part.positions[3 * i];
+    for (const double coordinate : placed(meshFromPart, vertex)) {
       const float value = static_cast<float>(coordinate);
       if (!std::isfinite(value)) {
         std::ostringstream problem;
@@ -165,7 +195,7 @@ void requireTriangles(bool some, const Collector& collected) {
 
 MeshData readWholeFile(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   const std::string name = path.string();
-  const MeshFile file = openFile(path);
+  const MeshFile file = openFile(path, warnings);
   requireSize(name, file, false);
   Collector collector{name, file, {path.filename().string(), {}, {}}};
   for (const MeshFile::Node& node : file.nodes) collector.add(node, node.fileFromNode);
@@ -179,7 +209,7 @@ MeshData readWholeFile(const std::filesystem::path& path, std::vector<std::strin
 Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   const DefaultFloats floats;
   const std::string name = path.string();
-  const MeshFile file = openFile(path);
+  const MeshFile file = openFile(path, warnings);
   requireSize(name, file, true);
   Assembly assembly;
   Collector collector{name, file, {}};

@@ -37,9 +37,10 @@ MeshName splitMeshName(const std::filesystem::path& name);
 
 /// Reads a file as one mesh: nodes depth-first, each node's meshes in order, their vertices and faces in order, as
 /// often as nodes place them. Node transforms are multiplied in double precision and each vertex is rounded once to
-/// float. Faces of more than three corners are fanned from their first corner; points and lines are dropped and counted
-/// in a warning. No vertex is joined, moved or left out, no face removed. With a FILE#NODE, reads that node's meshes
-/// only, in the node's own frame.
+/// float. Faces of more than three corners are split: into a fan from their first corner, if it does not leave the
+/// face, else by cutting corners off. A warning counts those that are not plane or cross themselves. Points and lines
+/// are dropped and counted in a warning. No vertex is joined, moved or left out, no face removed. With a FILE#NODE,
+/// reads that node's meshes only, in the node's own frame.
 ///
 /// Files whose names end in .obj, .stl, .ply or .off are read here: a number in text becomes the nearest float. Assimp
 /// reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it makes

@@ -1,7 +1,10 @@
 #include "import/number_text.h"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
+#include <cmath>
+#include <limits>
 
 namespace radar::tools {
 
@@ -37,6 +40,23 @@ std::optional<Real> nearest(std::string_view text) {
 }
 template std::optional<float> nearest<float>(std::string_view);
 template std::optional<double> nearest<double>(std::string_view);
+
+std::optional<double> inFloatRange(double value) {
+  if (std::isfinite(value) && std::isinf(static_cast<float>(value))) return {};
+  return value;
+}
+
+std::optional<double> coordinate(std::string_view text) {
+  const std::optional<double> value = nearest<double>(text);
+  if (!value || *value == 0 || !std::isfinite(*value)) return value;
+  // Halfway between two floats, as far as the double tells, the text decides, which has more digits.
+  constexpr uint64_t kBelowFloat = (uint64_t(1) << 29) - 1;
+  const bool isHalfway = (std::bit_cast<uint64_t>(*value) & kBelowFloat) == (kBelowFloat + 1) / 2;
+  if (!isHalfway && std::abs(*value) >= double(std::numeric_limits<float>::min())) return inFloatRange(*value);
+  const std::optional<float> rounded = nearest<float>(text);
+  if (!rounded || static_cast<float>(*value) == *rounded) return rounded ? value : std::nullopt;
+  return std::nextafter(*value, double(*rounded));
+}
 
 std::optional<uint64_t> wholeNumber(std::string_view text) {
   uint64_t value = 0;

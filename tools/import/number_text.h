@@ -12,6 +12,13 @@ namespace radar::tools {
 template <class Real>
 std::optional<Real> nearest(std::string_view text);
 
+/// Nothing for a finite number that would be infinite as a float.
+std::optional<double> inFloatRange(double value);
+
+/// Of a coordinate: nearest<double>, except that the float nearest to it is nearest<float>, too, which may take an ulp.
+/// Nothing also if that is out of range.
+std::optional<double> coordinate(std::string_view text);
+
 /// A whole number without a sign.
 std::optional<uint64_t> wholeNumber(std::string_view text);
 

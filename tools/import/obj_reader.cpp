@@ -46,7 +46,7 @@ class ObjReader {
 
   Text text_;
   std::string joined_;
-  std::vector<float> positions_;
+  std::vector<double> positions_;
   std::vector<Piece> pieces_;
   std::vector<Object> objects_;
   std::unordered_map<std::string, size_t> firstOf_;  ///< of the objects of a name
@@ -102,10 +102,9 @@ void ObjReader::readVertex(Text line) {
   if (count != 3 && count != 4 && count != 6) {
     line.expected("3 or 4 coordinates, or 3 and a colour", std::to_string(count) + (count == 7 ? " or more" : ""));
   }
-  const double weight = count == 4 ? line.number<double>(words[3]) : 1;
+  const double weight = count == 4 ? line.number(words[3]) : 1;
   for (size_t k = 0; k < 3; ++k) {
-    positions_.push_back(weight == 1 ? line.number<float>(words[k])
-                                     : static_cast<float>(line.number<double>(words[k]) / weight));
+    positions_.push_back(weight == 1 ? line.coordinate(words[k]) : line.number(words[k]) / weight);
   }
 }
 

@@ -29,16 +29,15 @@ Text dataLine(Text& text, const char* what, uint64_t i, uint64_t count) {
               "expected " + std::to_string(count) + " in all, the file ends");
 }
 
-void readVertex(Text line, bool homogeneous, std::vector<float>& positions) {
+void readVertex(Text line, bool homogeneous, std::vector<double>& positions) {
   double weight = 1;
   if (homogeneous) {
     Text ahead = line;
-    for (int k = 0; k < 4; ++k) weight = ahead.number<double>(ahead.token());
+    for (int k = 0; k < 4; ++k) weight = ahead.number(ahead.token());
   }
   for (int k = 0; k < 3; ++k) {
     const std::string_view word = line.token();
-    positions.push_back(weight == 1 ? line.number<float>(word)
-                                    : static_cast<float>(line.number<double>(word) / weight));
+    positions.push_back(weight == 1 ? line.coordinate(word) : line.number(word) / weight);
   }
 }
 

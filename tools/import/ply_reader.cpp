@@ -55,15 +55,17 @@ class PlyReader {
   void readHeader();
   void readProperty(Text line);
   void readItem();
-  void readList(const Property& property, bool areCorners);
-  bool isCorners(const Property& property) const;
+  void readList(const Property& property);
+  void readFace(const Property& property, uint64_t count);
+  void readStrip(const Property& property, uint64_t count);
   /// The next value. `word` is its text in an ASCII file, empty in others.
   struct Value {
     std::string_view word;
     double number = 0;
   };
   Value take(const Type& type);
-  uint64_t takeWhole(const Type& type, const char* what, uint64_t end);
+  uint64_t takeWhole(const Type& type, const char* what, uint64_t end) { return wholeOf(take(type), what, end); }
+  uint64_t wholeOf(const Value& value, const char* what, uint64_t end) const;
   static std::string inWords(const Value& value);
   [[noreturn]] void refuse(const std::string& problem) const;
 
@@ -86,7 +88,6 @@ MeshFile PlyReader::read() {
   }
   for (const Element& element : elements_) {
     element_ = &element;
-    if (element.name == "tristrips") text_.refuse("header", "expected faces, got triangle strips, which are not read");
     if (element.properties.empty()) continue;  // takes no room, however many
     for (item_ = 0; item_ < element.count; ++item_) readItem();
   }
@@ -141,42 +142,58 @@ void PlyReader::refuse(const std::string& problem) const {
   text_.refuse(element_->name + " " + std::to_string(item_), problem);
 }
 
-bool PlyReader::isCorners(const Property& property) const {
-  return element_->name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
-}
-
 void PlyReader::readItem() {
-  std::array<std::optional<float>, 3> position;
+  std::array<std::optional<double>, 3> position;
   for (const Property& property : element_->properties) {
     if (property.length) {
-      readList(property, isCorners(property));
+      readList(property);
       continue;
     }
     const Value value = take(property.type);
     const size_t axis = property.name.size() == 1 ? std::string_view("xyz").find(property.name) : 3;
     if (element_->name != "vertex" || axis > 2) continue;
-    position[axis] = format_ == Format::ascii ? nearest<float>(value.word) : static_cast<float>(value.number);
-    if (!position[axis] || (std::isinf(*position[axis]) && std::isfinite(value.number) && value.word.empty())) {
+    position[axis] = format_ == Format::ascii ? coordinate(value.word) : inFloatRange(value.number);
+    if (!position[axis]) {
       refuse("expected a coordinate in the range of floats, got " + inWords(value));
     }
   }
   if (element_->name != "vertex") return;
-  for (const std::optional<float>& coordinate : position) {
+  for (const std::optional<double>& coordinate : position) {
     if (!coordinate) refuse("expected the properties x, y and z");
     part_.positions.push_back(*coordinate);
   }
 }
 
-void PlyReader::readList(const Property& property, bool areCorners) {
+void PlyReader::readList(const Property& property) {
   const uint64_t count = takeWhole(*property.length, "the length of a list", UINT64_MAX);
-  if (!areCorners) {
-    if (format_ != Format::ascii && count <= text_.rest().size() / property.type.bytes) {
-      text_.skipBytes(count * property.type.bytes);
-    } else {
-      for (uint64_t i = 0; i < count; ++i) take(property.type);
-    }
-    return;
+  const bool areCorners = property.name == "vertex_indices" || property.name == "vertex_index";
+  if (areCorners && element_->name == "face") return readFace(property, count);
+  if (areCorners && element_->name == "tristrips") return readStrip(property, count);
+  if (format_ != Format::ascii && count <= text_.rest().size() / property.type.bytes) {
+    text_.skipBytes(count * property.type.bytes);
+  } else {
+    for (uint64_t i = 0; i < count; ++i) take(property.type);
   }
+}
+
+/// Every second triangle runs round the other way in a strip. -1 ends one.
+void PlyReader::readStrip(const Property& property, uint64_t count) {
+  corners_.clear();
+  for (uint64_t i = 0; i < count; ++i) {
+    const Value value = take(property.type);
+    if (value.word == "-1" || value.number == -1) {
+      corners_.clear();
+      continue;
+    }
+    corners_.push_back(static_cast<uint32_t>(wholeOf(value, "the number of a vertex, or -1", vertices_)));
+    if (corners_.size() < 3) continue;
+    const size_t last = corners_.size() - 1, odd = last % 2;
+    const uint32_t a = corners_[last - 2 + odd], b = corners_[last - 1 - odd], c = corners_[last];
+    if (a != b && b != c && c != a) part_.indices.insert(part_.indices.end(), {a, b, c});
+  }
+}
+
+void PlyReader::readFace(const Property& property, uint64_t count) {
   corners_.clear();
   for (uint64_t i = 0; i < count; ++i) {
     corners_.push_back(static_cast<uint32_t>(takeWhole(property.type, "the number of a vertex", vertices_)));
@@ -216,8 +233,7 @@ PlyReader::Value PlyReader::take(const Type& type) {
   refuse("expected " + std::to_string(element_->count) + " of element " + element_->name + ", the file ends");
 }
 
-uint64_t PlyReader::takeWhole(const Type& type, const char* what, uint64_t end) {
-  const Value value = take(type);
+uint64_t PlyReader::wholeOf(const Value& value, const char* what, uint64_t end) const {
   if (format_ == Format::ascii) {
     const std::optional<uint64_t> whole = wholeNumber(value.word);
     if (whole && *whole < end) return *whole;

@@ -1,4 +1,4 @@
-// The readers of OBJ, STL, PLY and OFF, whose numbers become the nearest floats, and that of all other formats.
+// The readers of OBJ, STL, PLY and OFF, whose numbers become the nearest doubles, and that of all other formats.
 //
 // A file that ends early, names a vertex that does not exist or is otherwise broken is refused with an InputError.
 #pragma once
@@ -18,7 +18,8 @@ MeshFile readObj(Text text);
 /// A node for each solid; binary files are one. Three vertices for each facet. Ignores normals and colours.
 MeshFile readStl(Text text);
 
-/// One node; ASCII and both kinds of binary files. Refuses triangle strips.
+/// One node; ASCII and both kinds of binary files; faces, and triangle strips, whose triangles with a repeated
+/// vertex, which only lead on, are left out.
 MeshFile readPly(Text text);
 
 /// One node. Vertices and faces have a line each, whose rest (normals, colours) is ignored. Homogeneous coordinates are

@@ -55,7 +55,7 @@ void readFacet(Text& text, MeshFile::Part& part) {
     if (word.empty()) text.expected("endfacet", word);
     if (!is(word, "vertex")) continue;  // the normal, "outer", "loop", "endloop"
     if (++vertices > 3) text.expected("a facet of 3 vertices", "another one");
-    for (int k = 0; k < 3; ++k) part.positions.push_back(text.number<float>(text.token()));
+    for (int k = 0; k < 3; ++k) part.positions.push_back(text.coordinate(text.token()));
   }
   if (vertices < 3) text.expected("a facet of 3 vertices", std::to_string(vertices));
   addTriangle(part);

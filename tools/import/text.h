@@ -31,13 +31,10 @@ class Text {
     drop(std::min(found.size() + 1, rest_.size()));
     return found.ends_with('\r') ? found.substr(0, found.size() - 1) : found;
   }
-  /// Of a coordinate. Throws unless `word` is a number, be it no finite one, that is not too large.
-  template <class Real>
-  Real number(std::string_view word) const {
-    const std::optional<Real> value = nearest<Real>(word);
-    if (!value) expected("a number in the range of floats", word);
-    return *value;
-  }
+  /// Throws unless `word` is a number, be it no finite one, that is in the range of floats.
+  double coordinate(std::string_view word) const { return known(radar::tools::coordinate(word), word); }
+  /// The same for doubles.
+  double number(std::string_view word) const { return known(nearest<double>(word), word); }
   /// False if fewer bytes are left.
   bool skipBytes(uint64_t count) {
     if (rest_.size() < count) return false;
@@ -59,6 +56,10 @@ class Text {
   }
 
  private:
+  double known(const std::optional<double>& value, std::string_view word) const {
+    if (!value) expected("a number in the range of floats", word);
+    return *value;
+  }
   void drop(size_t count) {
     line_ += std::count(rest_.begin(), rest_.begin() + count, '\n');
     rest_.remove_prefix(count);

@@ -45,7 +45,7 @@ void run(std::string_view input) {
   std::filesystem::remove(folder.path() / name);
   const std::string file = folder.write(name, std::string(input.substr(1)));
   std::vector<std::string> warnings;
-  MeshData mesh;
+  tools::FileMesh mesh;
   try {
     mesh = tools::readMesh(file, warnings);
   } catch (const tools::InputError& error) {
@@ -54,10 +54,12 @@ void run(std::string_view input) {
   checkMesh(mesh);
   // The parts of an assembly have the same triangles, since no node of these formats is moved.
   const Assembly assembly = tools::readAssembly(file, warnings);
+  const auto isMoved = [](const Assembly::Part& part) { return part.fileFromMesh != Transform{}; };
+  // Bases are those of the parts.
+  if (mesh.base != std::array<double, 3>{} || std::ranges::any_of(assembly.parts, isMoved)) return;
   std::vector<float> whole, parts;
   appendCorners(mesh, whole);
   for (const Assembly::Part& part : assembly.parts) {
-    require(part.fileFromMesh == Transform{}, "a node that is moved");
     const MeshData& own = assembly.meshes.at(part.mesh);
     checkMesh(own);
     appendCorners(own, parts);

@@ -84,8 +84,10 @@ def test_meshes_are_kept_as_given_and_rounding_is_said():
     kept, faces = scene.mesh(mesh)
     assert kept.dtype == np.float32 and (kept == vertices).all() and (faces == [[0, 1, 2]]).all()
     scene.add_mesh([[0, 0, 0], [0.5, 0, 0], [0, 1, 0]], [[0, 1, 2]])  # float32 holds these
-    with pytest.warns(cyber_radar.RoundingWarning, match=r"rounded to float32, by up to 1\.5e-09") as caught:
-        scene.add_mesh([[0, 0, 0], [0.1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    scene.add_mesh([[0, 0, 0], [0.1, 0, 0], [0, 1, 0]], [[0, 1, 2]])  # a billionth off, which is nothing to a mesh of 1
+    scene.remove_mesh(2)
+    with pytest.warns(cyber_radar.RoundingWarning, match=r"rounded to float32, by up to 0\.12") as caught:
+        scene.add_mesh([[4512350.123, 0, 0], [4512351, 0, 0], [4512350, 1, 0]], [[0, 1, 2]])
     assert caught[0].filename == __file__
     assert scene.meshes == [0, 1, 2]
     scene.remove_mesh(1)

@@ -11,6 +11,7 @@
 #include "batch/query_file.h"
 #include "import/input_error.h"
 
+#include "import/float_vertices.h"
 namespace radar::tools {
 
 namespace {
@@ -23,8 +24,9 @@ std::string among(size_t count, const char* what) {
 
 }  // namespace
 
-BinaryQueries::BinaryQueries(const std::filesystem::path& file, const Workload& world, size_t meshes)
-    : name_(file.string()), world_(world), meshes_(meshes), columns_(file) {
+BinaryQueries::BinaryQueries(const std::filesystem::path& file, const Workload& world,
+                             std::vector<std::array<double, 3>> bases)
+    : name_(file.string()), world_(world), bases_(std::move(bases)), columns_(file) {
   mesh_ = column("mesh", "iu", {}, true);
   pose_ = column("pose", "f", {3, 4}, true);
   motion_ = column("motion", "f", {3}, false);
@@ -132,10 +134,11 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   if (scenes == 0) throw InputError(name_, "", "expected a query file with a scene");
   if (scene_) query.scene = static_cast<uint32_t>(whole(*scene_, index, scenes - 1, among(scenes, "scenes")));
   if (batch_) query.batch = whole(*batch_, index, ~uint64_t{0}, "a whole number from 0");
-  if (meshes_ == 0) throw InputError(name_, "mesh", "expected a query file with a mesh");
-  query.mesh = static_cast<uint32_t>(whole(*mesh_, index, meshes_ - 1, among(meshes_, "meshes")));
+  if (bases_.empty()) throw InputError(name_, "mesh", "expected a query file with a mesh");
+  query.mesh = static_cast<uint32_t>(whole(*mesh_, index, bases_.size() - 1, among(bases_.size(), "meshes")));
   for (uint64_t k = 0; k < 12; ++k) query.worldFromMesh.m[k] = pose_->real(index, k);
   if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) refuse(*pose_, index, wrong);
+  query.worldFromMesh = aboutBase(query.worldFromMesh, bases_[query.mesh]);
   readMove(query, index);
   for (size_t i = 0; i < fields_.size(); ++i) {
     if (!fields_[i]) continue;

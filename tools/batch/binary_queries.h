@@ -14,9 +14,9 @@ namespace radar::tools {
 
 class BinaryQueries {
  public:
-  /// `world`: the meshes and scenes that the queries name; the first `meshes` meshes may be sensors. Checks names,
+  /// `world`: the meshes and scenes that the queries name; the first ones, of these bases, may be sensors. Checks names,
   /// types and shapes of the columns. Throws InputError that names file and column. `world` must outlive this.
-  BinaryQueries(const std::filesystem::path& file, const Workload& world, size_t meshes);
+  BinaryQueries(const std::filesystem::path& file, const Workload& world, std::vector<std::array<double, 3>> bases);
 
   uint64_t count() const { return columns_.rows(); }
   /// A query; its id is its index. Throws InputError that names file, column and index if a value breaks its contract.
@@ -34,7 +34,7 @@ class BinaryQueries {
 
   std::string name_;
   const Workload& world_;
-  size_t meshes_;
+  std::vector<std::array<double, 3>> bases_;
   Columns columns_;
   std::vector<std::string> known_;
   const Column *mesh_, *pose_, *direction_, *distance_, *motion_, *scene_, *batch_, *mode_;

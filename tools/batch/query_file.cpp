@@ -67,7 +67,7 @@ QueryFile::QueryFile(const std::filesystem::path& file, std::vector<std::string>
   JsonQueryFile json = readJsonQueryFile(file, warnings, outputs);
   world_ = std::move(json.workload);
   if (json.queriesFile) {
-    binary_ = std::make_unique<BinaryQueries>(*json.queriesFile, world_, json.listedMeshes);
+    binary_ = std::make_unique<BinaryQueries>(*json.queriesFile, world_, json.bases);
     modes_ = check(*binary_, world_);
     json.fingerprint.add(binary_->bytes());
   } else {

@@ -115,15 +115,15 @@ class Reader {
   std::vector<ObjectMask> readMasks(const JsonValue& list, size_t objects) const;
   std::vector<ObjectMotion> readMotions(const JsonValue& list, size_t objects) const;
   std::vector<Deformation> readDeforms(const JsonValue& list);
-  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh);
+  std::vector<float> readPositions(const std::filesystem::path& file, uint32_t number);
 
   std::filesystem::path file_;
   std::string name_;
   std::vector<std::string>& warnings_;
   const Outputs& outputs_;
   Workload workload_;
-  Fingerprint fingerprint_;  ///< of what is read
-  size_t listed_ = 0;        ///< of the meshes, those that the file lists; those of assemblies follow
+  Fingerprint fingerprint_;                   ///< of what is read
+  std::vector<std::array<double, 3>> bases_;  ///< of the meshes that the file lists; those of assemblies follow
   std::map<std::filesystem::path, Assembly> assemblies_;
   std::map<const Assembly*, uint32_t> firstMesh_;  ///< of the assemblies that scenes place
   std::unordered_set<std::string> sceneIds_, queryIds_;
@@ -151,7 +151,6 @@ JsonQueryFile Reader::read() {
   const JsonValue format = root.member("format");
   if (format.string() != "cyber-radar-queries-1") format.expected("\"cyber-radar-queries-1\"");
   root.member("meshes").forEach([&](const JsonValue& mesh) { readMesh(mesh); });
-  listed_ = workload_.meshes.size();
   root.member("scenes").forEach([&](const JsonValue& scene) { readScene(scene); });
   JsonQueryFile result;
   if (root.has("queries_file")) {
@@ -168,17 +167,20 @@ JsonQueryFile Reader::read() {
   }
   result.workload = std::move(workload_);
   result.fingerprint = fingerprint_;
-  result.listedMeshes = listed_;
+  result.bases = bases_;
   return result;
 }
 
 void Reader::readMesh(const JsonValue& value) {
   const std::filesystem::path path = pathOf(value);
-  workload_.meshes.push_back(value.guard([&] {
+  const FileMesh mesh = value.guard([&] {
     const MeshName split = splitMeshName(path);
     return split.node ? assembly(split.file).meshOf(split.file.string(), *split.node)
                       : tools::readMesh(path, warnings_);
-  }));
+  });
+  workload_.meshes.push_back(mesh);
+  bases_.push_back(mesh.base);
+  fingerprint_.add(mesh.base);
   workload_.meshes.back().name = value.string();
 }
 
@@ -260,15 +262,16 @@ std::vector<Deformation> Reader::readDeforms(const JsonValue& list) {
   std::unordered_set<uint32_t> named;
   list.forEach([&](const JsonValue& pair) {
     if (pair.size() != 2) pair.expected("[mesh, \"file of positions\"]");
-    const uint32_t mesh = pair[0].index(listed_, "meshes");
+    const uint32_t mesh = pair[0].index(bases_.size(), "meshes");
     if (!named.insert(mesh).second) pair[0].expected("each mesh once");
     const std::filesystem::path file = pathOf(pair[1]);
-    deforms.push_back({mesh, pair[1].guard([&] { return readPositions(file, workload_.meshes[mesh]); })});
+    deforms.push_back({mesh, pair[1].guard([&] { return readPositions(file, mesh); })});
   });
   return deforms;
 }
 
-std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) {
+std::vector<float> Reader::readPositions(const std::filesystem::path& file, uint32_t number) {
+  const MeshData& mesh = workload_.meshes[number];
   static_assert(std::endian::native == std::endian::little);
   const std::string bytes = readRegularFile(file, "a file of vertex positions");
   fingerprint_.add(bytes);
@@ -285,6 +288,9 @@ std::vector<float> Reader::readPositions(const std::filesystem::path& file, cons
     if (std::isfinite(positions[i])) continue;
     throw InputError(file.string(), "vertex " + std::to_string(i / 3), "expected finite numbers");
   }
+  for (size_t i = 0; i < positions.size(); ++i) {
+    positions[i] = static_cast<float>(double(positions[i]) - bases_[number][i % 3]);
+  }
   return positions;
 }
 
@@ -292,9 +298,10 @@ Instance Reader::readInstance(const JsonValue& list) const {
   const size_t count = list.size();
   if (count != 1 && count != 13) list.expected("a mesh index, alone or followed by 12 numbers");
   Instance instance;
-  instance.mesh = list[0].index(listed_, "meshes");
+  instance.mesh = list[0].index(bases_.size(), "meshes");
   for (size_t i = 1; i < count; ++i) instance.worldFromMesh.m[i - 1] = list[i].number();
   if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) list.refuse(wrong);
+  instance.worldFromMesh = aboutBase(instance.worldFromMesh, bases_[instance.mesh]);
   return instance;
 }
 
@@ -319,13 +326,14 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
     if (count != 1 && count != 13) {
       expected("a mesh index, alone or followed by 12 numbers, separated by blanks");
     }
-    const size_t meshes = listed_;
+    const size_t meshes = bases_.size();
     if (!(numbers[0] >= 0 && numbers[0] < double(meshes) && std::floor(numbers[0]) == numbers[0])) {
       expected("first a whole number that names one of the " + std::to_string(meshes) + " meshes, from 0");
     }
     Instance instance{static_cast<uint32_t>(numbers[0]), {}};
     if (count == 13) std::copy(numbers.begin() + 1, numbers.end(), instance.worldFromMesh.m.begin());
     if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) refuse(wrong);
+    instance.worldFromMesh = aboutBase(instance.worldFromMesh, bases_[instance.mesh]);
     instances.push_back(instance);
   }
   return instances;

@@ -1,6 +1,7 @@
 // The JSON of query files.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,8 +14,8 @@
 namespace radar::tools {
 
 struct JsonQueryFile {
-  Workload workload;        ///< without the queries of a queries file
-  size_t listedMeshes = 0;  ///< the meshes that sensors may be; those of assemblies follow
+  Workload workload;                         ///< without the queries of a queries file
+  std::vector<std::array<double, 3>> bases;  ///< of the meshes that sensors may be; those of assemblies follow
   std::optional<std::filesystem::path> queriesFile;
   Fingerprint fingerprint;  ///< of all but the queries file
 };

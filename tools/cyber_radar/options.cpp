@@ -181,9 +181,10 @@ Workload SweepOptions::load() const {
 
   std::vector<std::string> warnings;
   Workload workload;
-  workload.meshes.push_back(readMesh(scene, warnings));
-  workload.meshes.push_back(readMesh(sensor, warnings));
-  workload.scenes.push_back({"scene", {}, {{0, {}}}, {}});
+  const FileMesh still = readMesh(scene, warnings), moving = readMesh(sensor, warnings);
+  workload.meshes = {still, moving};
+  workload.scenes.push_back({"scene", {}, {{0, aboutBase({}, still.base)}}, {}});
+  query.worldFromMesh = aboutBase(query.worldFromMesh, moving.base);
   workload.queries.push_back(query);
   printWarnings(warnings);
   return workload;

@@ -1,4 +1,5 @@
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 
 #include <assimp/DefaultIOSystem.h>
@@ -141,6 +142,12 @@ MeshFile readWithAssimp(const std::filesystem::path& file) {
   for (const std::string& line : logLines) {
     if (tellsOfBrokenGeometry(line))
       throw InputError(name, "", "expected an intact mesh file, got: " + printable(line, 200));
+  }
+  // A Collada file's root has no transform of its own: assimp's turns it upright and scales it to metres.
+  const aiImporterDesc* const format =
+      importer.GetImporterInfo(static_cast<size_t>(importer.GetPropertyInteger("importerIndex", -1)));
+  if (format != nullptr && std::string_view(format->mName) == "Collada Importer") {
+    scene->mRootNode->mTransformation = aiMatrix4x4();
   }
   return meshFileFrom(*scene, GltfPoses(file));
 }

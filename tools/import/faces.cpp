@@ -73,13 +73,13 @@ class Border {
   std::vector<Triangle> cut();
 
  private:
-  /// Which corners may be cut off: those that are where a neighbour is; those whose triangle holds no other corner,
-  /// even on its sides; those that lie on a line with their neighbours; those whose triangle holds no other corner
-  /// inside, nor on the new side.
-  enum class Step { repeated, clear, flat, touched };
+  /// Which corners may be cut off: spikes; also those whose triangle holds no other corner, even on its sides; those
+  /// that lie on a line with their neighbours; those whose triangle holds no other corner inside, nor on the new side.
+  enum class Step { spike, clear, flat, touched };
 
   int turn(const Point& p, const Point& q, const Point& r) const;
   int turnAt(uint32_t i) const { return turn(points_[before_[i]], points_[i], points_[next_[i]]); }
+  bool isSpike(uint32_t i) const;
   bool mayCut(uint32_t i, Step step) const;
   bool isWithin(uint32_t corner, const Point& to) const;
   bool cutOne(uint32_t& from, Step step, std::vector<Triangle>& to);
@@ -108,11 +108,17 @@ bool Border::isWithin(uint32_t corner, const Point& to) const {
   return turns_[corner] > 0 ? leftOfIn && leftOfOut : leftOfIn || leftOfOut;
 }
 
+/// Whether the border goes back at a corner, or stays there: such a corner has no angle, or a whole turn.
+bool Border::isSpike(uint32_t i) const {
+  const Point &a = points_[before_[i]], &b = points_[i], &c = points_[next_[i]];
+  return turns_[i] == 0 && (a == b || b == c || (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]) > 0);
+}
+
 bool Border::mayCut(uint32_t i, Step step) const {
   const Point &a = points_[before_[i]], &b = points_[i], &c = points_[next_[i]];
-  if (step == Step::repeated) return a == b || b == c;
+  if (step <= Step::clear && isSpike(i)) return true;
   if (step == Step::flat) return turns_[i] == 0;
-  if (turns_[i] <= 0) return false;
+  if (turns_[i] <= 0 || step == Step::spike) return false;
   if (!isWithin(before_[i], c) || !isWithin(next_[i], a)) return false;
   const auto [low0, high0] = std::minmax({a[0], b[0], c[0]});
   const auto [low1, high1] = std::minmax({a[1], b[1], c[1]});
@@ -138,7 +144,8 @@ bool Border::cutOne(uint32_t& from, Step step, std::vector<Triangle>& to) {
     --left_;
     turns_[before] = turnAt(before);
     turns_[next] = turnAt(next);
-    from = next_[next];  // going on round the border makes fewer long, thin triangles
+    // Going on round the border makes fewer long, thin triangles.
+    from = isSpike(before) ? before : isSpike(next) ? next : next_[next];
     return true;
   }
   return false;
@@ -151,7 +158,7 @@ std::vector<Triangle> Border::cut() {
   const auto cutAny = [&](std::initializer_list<Step> steps) {
     return std::ranges::any_of(steps, [&](Step step) { return cutOne(from, step, triangles); });
   };
-  while (left_ > 3 && cutOne(from, Step::repeated, triangles)) {
+  while (left_ > 3 && cutOne(from, Step::spike, triangles)) {
   }
   while (left_ > 3) {
     if (!cutAny({Step::clear, Step::flat, Step::touched})) return triangles;
@@ -225,6 +232,19 @@ double sizeOf(const std::vector<Point>& points) {
   return size;
 }
 
+double areaOf(const Point& p, const Point& q, const Point& r) {
+  return ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])) / 2;
+}
+
+/// Whether the triangles together are as large as the face, but for rounding.
+bool isFilled(const std::vector<Point>& points, const std::vector<Triangle>& triangles) {
+  if (triangles.size() + 2 < points.size()) return false;
+  double all = 0, face = 0;
+  for (const auto& [a, b, c] : triangles) all += std::abs(areaOf(points[a], points[b], points[c]));
+  for (size_t i = 2; i < points.size(); ++i) face += areaOf(points[0], points[i - 1], points[i]);
+  return all <= face * (1 + 0x1p-10);
+}
+
 /// Triangles that all turn left cover the face as often as its border runs round it.
 bool isFan(const std::vector<Point>& points) {
   for (size_t i = 2; i < points.size(); ++i) {
@@ -266,10 +286,11 @@ void splitFaces(const std::string& file, MeshFile::Part& part, OddFaces& odd) {
                            " corners of a face that is not convex, got " + std::to_string(face.corners));
     }
     std::vector<Triangle> triangles;
-    for (const double near : kNear) {
-      if (triangles.size() + 2 < face.corners) triangles = Border(points, near * sizeOf(points)).cut();
-    }
-    if (triangles.size() + 2 < face.corners) {
+    const bool isSplit = std::ranges::any_of(kNear, [&](double near) {
+      triangles = Border(points, near * sizeOf(points)).cut();
+      return isFilled(points, triangles);
+    });
+    if (!isSplit) {
       ++odd.crossing;
       continue;
     }

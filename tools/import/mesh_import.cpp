@@ -66,6 +66,16 @@ MeshFile readInChild(const std::filesystem::path& file) {
   throw InputError(file.string(), "", "expected a mesh file that assimp reads, but it " + outcome.failed);
 }
 
+/// OBJ and OFF files are text, PLY files begin with it. UTF-16 and UTF-32 have zeros between letters.
+void requireUtf8(const std::string& file, const std::string& extension, std::string_view text) {
+  const std::string_view head = text.substr(0, 4);
+  const bool hasMark = head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff");
+  if (extension != ".stl" ? hasMark || head.find('\0') != head.npos
+                          : hasMark && text.substr(0, 16).find('\0') != text.npos) {
+    throw InputError(file, "", "expected text in ASCII or UTF-8, got UTF-16, UTF-32 or none: save it as UTF-8");
+  }
+}
+
 MeshFile readFile(const std::filesystem::path& file) {
   using Reader = MeshFile (*)(Text);
   static const std::map<std::string, Reader> kReaders{
@@ -82,6 +92,7 @@ MeshFile readFile(const std::filesystem::path& file) {
   if (content.empty()) throw InputError(name, "", "expected a mesh file, got an empty one");
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   std::string_view text = content;
+  requireUtf8(name, extension, text);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   return reader->second({name, text});
 }
@@ -119,8 +130,12 @@ std::array<double, 3> placed(const Transform& pose, const double* p) {
 struct Collector {
   const std::string& name;
   const MeshFile& file;
-  MeshData mesh;
+  std::vector<double> positions{};
+  std::vector<uint32_t> indices{};
   uint64_t points = 0, lines = 0;
+
+  /// What was added since the last call.
+  FileMesh take(const std::string& meshName, std::vector<std::string>& warnings);
 
   void add(const MeshFile::Node& node, const Transform& meshFromNode);
   void add(const MeshFile::Part& part, const Transform& meshFromPart, const std::string& place);
@@ -133,18 +148,17 @@ void Collector::add(const MeshFile::Node& node, const Transform& meshFromNode) {
 }
 
 void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, const std::string& place) {
-  const size_t first = mesh.vertexCount(), count = part.positions.size() / 3;
+  const size_t first = positions.size() / 3, count = part.positions.size() / 3;
   for (size_t i = 0; i < count; ++i) {
     const double* vertex = &part.positions[3 * i];
     for (const double coordinate : placed(meshFromPart, vertex)) {
-      const float value = static_cast<float>(coordinate);
-      if (!std::isfinite(value)) {
+      if (!std::isfinite(static_cast<float>(coordinate))) {
         std::ostringstream problem;
         problem << "expected 3 finite numbers, got " << vertex[0] << " " << vertex[1] << " " << vertex[2]
                 << " before the node's transform";
         throw InputError(name, place + ": vertex " + std::to_string(i), problem.str());
       }
-      mesh.positions.push_back(value);
+      positions.push_back(coordinate);
     }
   }
   for (size_t i = 0; i < part.indices.size(); ++i) {
@@ -153,10 +167,24 @@ void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, c
       throw InputError(name, place + ": triangle " + std::to_string(i / 3),
                        "expected vertices below " + std::to_string(count) + ", got " + std::to_string(index));
     }
-    mesh.indices.push_back(static_cast<uint32_t>(first + index));
+    indices.push_back(static_cast<uint32_t>(first + index));
   }
   points += part.points;
   lines += part.lines;
+}
+
+FileMesh Collector::take(const std::string& meshName, std::vector<std::string>& warnings) {
+  FloatVertices vertices = floatVertices(positions, indices);
+  if (vertices.isSpoilt) {
+    std::ostringstream most;
+    most << vertices.change;
+    warnings.push_back(printable(meshName) + ": floats, which vertices become, change its numbers by up to " +
+                       most.str());
+  }
+  FileMesh mesh{{meshName, std::move(vertices.positions), std::move(indices)}, vertices.base};
+  positions.clear();
+  indices.clear();
+  return mesh;
 }
 
 /// Refuses, before anything is copied, what would be too large: a few bytes for a node may place a large mesh again.
@@ -193,15 +221,15 @@ void requireTriangles(bool some, const Collector& collected) {
                        counted(collected.lines, "line"));
 }
 
-MeshData readWholeFile(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+FileMesh readWholeFile(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   const std::string name = path.string();
   const MeshFile file = openFile(path, warnings);
   requireSize(name, file, false);
-  Collector collector{name, file, {path.filename().string(), {}, {}}};
+  Collector collector{name, file};
   for (const MeshFile::Node& node : file.nodes) collector.add(node, node.fileFromNode);
-  requireTriangles(!collector.mesh.indices.empty(), collector);
+  requireTriangles(!collector.indices.empty(), collector);
   warnOfDropped(collector, warnings);
-  return std::move(collector.mesh);
+  return collector.take(path.filename().string(), warnings);
 }
 
 }  // namespace
@@ -212,26 +240,28 @@ Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string
   const MeshFile file = openFile(path, warnings);
   requireSize(name, file, true);
   Assembly assembly;
-  Collector collector{name, file, {}};
+  Collector collector{name, file};
   std::map<std::vector<uint32_t>, uint32_t> known;  // what nodes place -> its mesh
   for (const MeshFile::Node& node : file.nodes) {
     auto found = known.find(node.parts);
     if (found == known.end()) {
-      collector.mesh = {path.filename().string() + "#" + std::to_string(assembly.parts.size()), {}, {}};
       collector.add(node, {});
-      if (collector.mesh.indices.empty()) continue;
+      const std::string meshName = path.filename().string() + "#" + std::to_string(assembly.parts.size());
+      FileMesh mesh = collector.take(meshName, warnings);
+      if (mesh.indices.empty()) continue;
       found = known.emplace(node.parts, static_cast<uint32_t>(assembly.meshes.size())).first;
-      assembly.meshes.push_back(std::move(collector.mesh));
+      assembly.meshes.push_back(std::move(mesh));
     }
     if (std::string wrong = validate(node.fileFromNode); !wrong.empty()) throw InputError(name, placeOf(node), wrong);
-    assembly.parts.push_back({node.name, found->second, node.fileFromNode});
+    const FileMesh& mesh = assembly.meshes[found->second];
+    assembly.parts.push_back({node.name, found->second, aboutBase(node.fileFromNode, mesh.base)});
   }
   requireTriangles(!assembly.parts.empty(), collector);
   warnOfDropped(collector, warnings);
   return assembly;
 }
 
-const MeshData& Assembly::meshOf(const std::string& file, const std::string& node) const {
+const FileMesh& Assembly::meshOf(const std::string& file, const std::string& node) const {
   if (node.find_first_not_of("0123456789") == node.npos) {
     uint32_t number = 0;
     const auto [end, error] = std::from_chars(node.data(), node.data() + node.size(), number);
@@ -265,11 +295,11 @@ MeshName splitMeshName(const std::filesystem::path& name) {
   return {name, {}};
 }
 
-MeshData readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings) {
+FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings) {
   const DefaultFloats floats;
   const MeshName split = splitMeshName(name);
   if (!split.node) return readWholeFile(split.file, warnings);
-  MeshData mesh = readAssembly(split.file, warnings).meshOf(split.file.string(), *split.node);
+  FileMesh mesh = readAssembly(split.file, warnings).meshOf(split.file.string(), *split.node);
   mesh.name = name.filename().string();
   return mesh;
 }

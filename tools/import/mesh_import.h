@@ -6,24 +6,32 @@
 #include <string>
 #include <vector>
 
+#include "import/float_vertices.h"
 #include "import/input_error.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
+
+/// A mesh of a file. Where floats do not suffice for the numbers of the file, they are about a base.
+struct FileMesh : MeshData {
+  std::array<double, 3> base{};  ///< a vertex is there plus its position; poses that the file's numbers are meant for
+                                 ///< become those of the mesh by aboutBase()
+};
 
 /// The nodes of a file that have triangles, depth-first.
 struct Assembly {
   struct Part {
     std::string name;  ///< the node's; others may have the same
     uint32_t mesh = 0;
-    Transform fileFromMesh;  ///< the transforms of the node and those above it, multiplied in double precision
+    /// The transforms of the node and those above it, multiplied in double precision, and the mesh's base.
+    Transform fileFromMesh;
   };
-  std::vector<MeshData> meshes;  ///< in the frames of their nodes; nodes that place the same meshes share one
+  std::vector<FileMesh> meshes;  ///< in the frames of their nodes; nodes that place the same meshes share one
   std::vector<Part> parts;
 
   /// The geometry of one node: `node` is its number in `parts` or the name that it alone has. Throws InputError that
   /// names `file` and the node.
-  const MeshData& meshOf(const std::string& file, const std::string& node) const;
+  const FileMesh& meshOf(const std::string& file, const std::string& node) const;
 };
 
 /// A mesh's name: FILE, or FILE#NODE for the geometry of one node.
@@ -37,19 +45,20 @@ MeshName splitMeshName(const std::filesystem::path& name);
 
 /// Reads a file as one mesh: nodes depth-first, each node's meshes in order, their vertices and faces in order, as
 /// often as nodes place them. Node transforms are multiplied in double precision and each vertex is rounded once to
-/// float. Faces of more than three corners are split: into a fan from their first corner, if it does not leave the
-/// face, else by cutting corners off. A warning counts those that are not plane or cross themselves. Points and lines
-/// are dropped and counted in a warning. No vertex is joined, moved or left out, no face removed. With a FILE#NODE,
-/// reads that node's meshes only, in the node's own frame.
+/// float, about a base (floatVertices()), with a warning that says by how much if that spoils the mesh. Faces of more
+/// than three corners are split: into a fan from their first corner, if it does not leave the face, else by cutting
+/// corners off. A warning counts those that are not plane or cross themselves. Points and lines are dropped and counted
+/// in a warning. No vertex is joined, moved or left out, no face removed. With a FILE#NODE, reads that node's meshes
+/// only, in the node's own frame.
 ///
-/// Files whose names end in .obj, .stl, .ply or .off are read here: a number in text becomes the nearest float. Assimp
+/// Files whose names end in .obj, .stl, .ply or .off are read here: a number in text becomes the nearest double. Assimp
 /// reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it makes
 /// of them.
 ///
 /// Appends to `warnings` what a person should know, each beginning with the file. Throws InputError if the file is
 /// missing, no regular file or broken, holds no triangle, a vertex that is not finite or a face that names a vertex
 /// that does not exist, or if its nodes place so much so often that the mesh would be too large.
-MeshData readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings);
+FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings);
 
 /// Reads a file as an assembly, otherwise as above. Also throws InputError if a node's pose is singular.
 Assembly readAssembly(const std::filesystem::path& file, std::vector<std::string>& warnings);

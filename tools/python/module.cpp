@@ -359,8 +359,14 @@ py::list deviceReports() {
 
 py::tuple readMesh(const std::filesystem::path& file) {
   std::vector<std::string> warnings;
-  const tools::MeshData mesh = released([&] { return tools::readMesh(file, warnings); });
-  return py::make_tuple(meshArrays(mesh.positions, mesh.indices), warnings);
+  const tools::FileMesh mesh = released([&] { return tools::readMesh(file, warnings); });
+  py::tuple arrays = meshArrays(mesh.positions, mesh.indices);
+  if (mesh.base != std::array<double, 3>{}) {
+    std::vector<double> placed;
+    for (size_t i = 0; i < mesh.positions.size(); ++i) placed.push_back(mesh.base[i % 3] + double(mesh.positions[i]));
+    arrays = py::make_tuple(arrayOf(placed, {py::ssize_t(mesh.vertexCount()), py::ssize_t(3)}), arrays[1]);
+  }
+  return py::make_tuple(arrays, warnings);
 }
 
 py::tuple readAssembly(const std::filesystem::path& file) {

@@ -100,9 +100,10 @@ def mesh_vertices(value: npt.ArrayLike) -> npt.NDArray[np.float32]:
         row = int(np.argwhere(~np.isfinite(rounded))[0][0])
         raise ValueError(f"vertices[{row}]: expected 3 finite numbers that float32 can hold, got {given[row]}")
     error = float(np.abs(rounded - given).max(initial=0.0))
-    if error > 0:
+    if error > 2.0**-20 * float(np.ptp(given, axis=0).max(initial=0.0)):
         warn(
-            f"vertices are rounded to float32, by up to {error:.2g}; pass float32 to say that this is meant",
+            f"vertices are rounded to float32, by up to {error:.2g}, more than a millionth of the mesh's size: subtract "
+            "an offset, which the transforms add; or pass float32 to say that this is meant",
             RoundingWarning,
         )
     return rounded

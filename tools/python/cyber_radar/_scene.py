@@ -95,7 +95,8 @@ class Scene:
     def add_mesh(self, vertices: Any, faces: npt.ArrayLike | None = None) -> int:
         """Adds a mesh and returns its id.
 
-        vertices: (N, 3), float32. Other numbers are rounded to float32, with a RoundingWarning if that changes any.
+        vertices: (N, 3), float32. Other numbers are rounded to float32, with a RoundingWarning if that
+            moves a vertex by more than a millionth of the mesh's size.
         faces: (M, 3), whole numbers: the vertices of each triangle.
 
         Or only one argument, a mesh of another package: anything with `vertices` and `faces`, as in trimesh, or

@@ -57,18 +57,6 @@ bool tellsOfBrokenGeometry(const std::string& logLine) {
   return false;
 }
 
-Transform product(const Transform& a, const Transform& b) {
-  Transform result;
-  for (unsigned row = 0; row < 3; ++row) {
-    for (unsigned column = 0; column < 4; ++column) {
-      double sum = column == 3 ? a.m[4 * row + 3] : 0.0;
-      for (unsigned k = 0; k < 3; ++k) sum += a.m[4 * row + k] * b.m[4 * k + column];
-      result.m[4 * row + column] = sum;
-    }
-  }
-  return result;
-}
-
 Transform transformFrom(const aiMatrix4x4& matrix) {
   Transform transform;
   for (unsigned i = 0; i < 12; ++i) transform.m[i] = double(matrix[i / 4][i % 4]);

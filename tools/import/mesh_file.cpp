@@ -73,6 +73,18 @@ void MeshFile::Part::addFace(const std::vector<uint32_t>& corners) {
   }
 }
 
+Transform product(const Transform& a, const Transform& b) {
+  Transform result;
+  for (unsigned row = 0; row < 3; ++row) {
+    for (unsigned column = 0; column < 4; ++column) {
+      double sum = column == 3 ? a.m[4 * row + 3] : 0.0;
+      for (unsigned k = 0; k < 3; ++k) sum += a.m[4 * row + k] * b.m[4 * k + column];
+      result.m[4 * row + column] = sum;
+    }
+  }
+  return result;
+}
+
 std::string bytesOf(const MeshFile& file) {
   Writer to;
   to.add<uint64_t>(file.parts.size());

@@ -32,6 +32,9 @@ struct MeshFile {
   std::vector<Node> nodes;  ///< depth-first; those without parts may be missing
 };
 
+/// a b: the pose of what b places in the frame that a places.
+Transform product(const Transform& a, const Transform& b);
+
 /// As bytes, to pass it on to another process. The way back throws std::runtime_error for bytes that are no MeshFile.
 std::string bytesOf(const MeshFile& file);
 MeshFile meshFileFrom(std::string_view bytes);

@@ -70,6 +70,7 @@ MeshFile readInChild(const std::filesystem::path& file) {
 void requireUtf8(const std::string& file, const std::string& extension, std::string_view text) {
   const std::string_view head = text.substr(0, 4);
   const bool hasMark = head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff");
+  if (extension == ".3mf") return;
   if (extension != ".stl" ? hasMark || head.find('\0') != head.npos
                           : hasMark && text.substr(0, 16).find('\0') != text.npos) {
     throw InputError(file, "", "expected text in ASCII or UTF-8, got UTF-16, UTF-32 or none: save it as UTF-8");
@@ -79,7 +80,7 @@ void requireUtf8(const std::string& file, const std::string& extension, std::str
 MeshFile readFile(const std::filesystem::path& file) {
   using Reader = MeshFile (*)(Text);
   static const std::map<std::string, Reader> kReaders{
-      {".obj", readObj}, {".stl", readStl}, {".ply", readPly}, {".off", readOff}};
+      {".obj", readObj}, {".stl", readStl}, {".ply", readPly}, {".off", readOff}, {".3mf", readThreeMf}};
   const std::string name = file.string();
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -51,9 +51,9 @@ MeshName splitMeshName(const std::filesystem::path& name);
 /// in a warning. No vertex is joined, moved or left out, no face removed. With a FILE#NODE, reads that node's meshes
 /// only, in the node's own frame.
 ///
-/// Files whose names end in .obj, .stl, .ply or .off are read here: a number in text becomes the nearest double. Assimp
-/// reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it makes
-/// of them.
+/// Files whose names end in .obj, .stl, .ply, .off or .3mf are read here: a number in text becomes the nearest double.
+/// Assimp reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it
+/// makes of them.
 ///
 /// Appends to `warnings` what a person should know, each beginning with the file. Throws InputError if the file is
 /// missing, no regular file or broken, holds no triangle, a vertex that is not finite or a face that names a vertex

@@ -1,4 +1,4 @@
-// The readers of OBJ, STL, PLY and OFF, whose numbers become the nearest doubles, and that of all other formats.
+// The readers of OBJ, STL, PLY, OFF and 3MF, whose numbers become the nearest doubles, and that of all other formats.
 //
 // A file that ends early, names a vertex that does not exist or is otherwise broken is refused with an InputError.
 #pragma once
@@ -25,6 +25,11 @@ MeshFile readPly(Text text);
 /// One node. Vertices and faces have a line each, whose rest (normals, colours) is ignored. Homogeneous coordinates are
 /// divided in double precision.
 MeshFile readOff(Text text);
+
+/// A node for each object with a mesh that a build item places, also through components. The unit, colours and
+/// materials are ignored. Refuses extensions that a reader must know, but those of materials and of production without
+/// paths.
+MeshFile readThreeMf(Text text);
 
 /// A file of another format, by assimp. May crash or run for ever on a broken file; throws std::bad_alloc, too.
 MeshFile readWithAssimp(const std::filesystem::path& file);

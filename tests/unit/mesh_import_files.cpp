@@ -63,6 +63,26 @@ TEST_CASE("nodes are visited depth-first, their transforms are multiplied, and e
                                                        0,  0, 0, 1,  0, 0, 0,  1, 0});
 }
 
+TEST_CASE("what a mirroring node places is wound the other way round in a mesh, and as it is stored in an assembly") {
+  const ScratchFolder folder;
+  const std::string file = writeNodes(folder, R"({"mesh": 0, "scale": [-2, 1, 1], "children": [1, 2]},
+    {"mesh": 0, "scale": [1, 1, -3]}, {"mesh": 0, "matrix": [0, 1, 0, 0, 1e-200, 0, 0, 0, 0, 0, 1e-200, 0, 0, 0, 5, 1]},
+    {"mesh": 0, "scale": [-1, -1, 1]})");
+  CHECK(corners(readWhole(file)) == std::vector<float>{0, 0, 0, 0,  1, 0, -2, 0,  0,  //
+                                                       0, 0, 0, -2, 0, 0, 0,  1,  0,  //
+                                                       0, 0, 5, 0,  1, 5, 0,  0,  5,  //
+                                                       0, 0, 0, -1, 0, 0, 0,  -1, 0});
+  std::vector<std::string> warnings;
+  const Assembly assembly = readAssembly(file, warnings);
+  REQUIRE(assembly.meshes.size() == 1);
+  CHECK(corners(assembly.meshes[0]) == std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+  // Collada's nodes, too.
+  const std::string node =
+      R"(<node><matrix>0 1 0 7 1 0 0 0 0 0 1 0 0 0 0 1</matrix><instance_geometry url="#g"/></node>)";
+  CHECK(corners(readWhole(folder.write("a.dae", radar::test::collada(node, "0 1 2", 1)))) ==
+        std::vector<float>{7, 0, 0, 8, 0, 0, 7, 1, 0});
+}
+
 TEST_CASE("an assembly has a part per node with triangles, named and placed by it, and nodes share a mesh") {
   const ScratchFolder folder;
   const std::string file = writeNodes(folder, R"({"name": "frame", "translation": [10, 0, 0], "children": [1, 2]},

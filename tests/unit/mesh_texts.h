@@ -58,4 +58,18 @@ inline std::string gltf(const std::string& nodes, const std::string& roots = "0"
          uri + R"(", "byteLength": 36}]})";
 }
 
+/// A Collada file of one geometry, "g", that has as many triangles; `corners` number its vertices (0, 0, 0), (1, 0, 0)
+/// and (0, 1, 0).
+inline std::string collada(const std::string& nodes, const std::string& corners, size_t triangles) {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1"/><up_axis>Y_UP</up_axis></asset><library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="f" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#f" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>
+</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count=")" +
+         std::to_string(triangles) + R"("><input semantic="VERTEX" source="#v" offset="0"/><p>)" + corners +
+         "</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\">" +
+         nodes + R"(</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
 }  // namespace radar::test

@@ -151,18 +151,7 @@ TEST_CASE("nodes that place a mesh too often are refused before it is copied, an
   for (int i = 0; i < 4096; ++i) {
     nodes += "<node id=\"n" + std::to_string(i) + "\"><instance_geometry url=\"#g\"/></node>\n";
   }
-  const std::string file = folder.write(
-      "many.dae",
-      R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit meter="1"/><up_axis>Y_UP</up_axis></asset><library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="f" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
-<accessor source="#f" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>
-</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="65537"><input semantic="VERTEX" source="#v" offset="0"/><p>)" +
-          corners +
-          "</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\">" +
-          nodes +
-          R"(</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
+  const std::string file = folder.write("many.dae", radar::test::collada(nodes, corners, 65'537));
   CHECK_THAT(refusalOf(file),
              Contains("expected at most 134217728 vertices and triangles") && Contains("as nodes place"));
   std::vector<std::string> warnings;

@@ -127,6 +127,20 @@ std::array<double, 3> placed(const Transform& pose, const double* p) {
   return result;
 }
 
+/// Whether a pose turns a mesh inside out.
+bool mirrors(const Transform& pose) {
+  double rows[3][3];  // scaled, so that products neither overflow nor underflow
+  for (unsigned row = 0; row < 3; ++row) {
+    double most = 0;
+    for (unsigned k = 0; k < 3; ++k) most = std::fmax(most, std::abs(pose.m[4 * row + k]));
+    if (most == 0) return false;
+    for (unsigned k = 0; k < 3; ++k) rows[row][k] = pose.m[4 * row + k] / most;
+  }
+  const auto& [a, b, c] = rows;
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]) <
+         0;
+}
+
 /// The triangles of nodes of a file, as one mesh.
 struct Collector {
   const std::string& name;
@@ -169,6 +183,11 @@ void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, c
                        "expected vertices below " + std::to_string(count) + ", got " + std::to_string(index));
     }
     indices.push_back(static_cast<uint32_t>(first + index));
+  }
+  if (mirrors(meshFromPart)) {
+    for (size_t i = indices.size() - part.indices.size(); i < indices.size(); i += 3) {
+      std::swap(indices[i + 1], indices[i + 2]);
+    }
   }
   points += part.points;
   lines += part.lines;

@@ -48,7 +48,8 @@ MeshName splitMeshName(const std::filesystem::path& name);
 /// float, about a base (floatVertices()), with a warning that says by how much if that spoils the mesh. Faces of more
 /// than three corners are split: into a fan from their first corner, if it does not leave the face, else by cutting
 /// corners off. A warning counts those that are not plane or cross themselves. Points and lines are dropped and counted
-/// in a warning. No vertex is joined, moved or left out, no face removed. With a FILE#NODE, reads that node's meshes
+/// in a warning. Triangles that a mirroring transform places are wound the other way round, so that what is outside stays
+/// outside. No vertex is joined, moved or left out, no face removed. With a FILE#NODE, reads that node's meshes
 /// only, in the node's own frame.
 ///
 /// Files whose names end in .obj, .stl, .ply, .off or .3mf are read here: a number in text becomes the nearest double.

@@ -58,8 +58,10 @@ TEST_CASE("pipes, devices and folders are refused, as mesh files, query files an
   CHECK_THAT(refusalOfQueries(folder.write("q.json", head + "a.off" + scene)),
              Contains("scenes[0].instances_file: ") && Contains("got a pipe"));
   // A buffer of a glTF file.
-  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "0", "pipe.obj"))), Contains("a.gltf: expected"));
-  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "0", "/dev/zero"))), Contains("a.gltf: expected"));
+  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "0", "pipe.obj"))),
+             Contains("a.gltf: buffers[0].uri: ") && Contains("expected a buffer, got a "));
+  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "0", "/dev/zero"))),
+             Contains("a.gltf: buffers[0].uri: ") && Contains("expected a buffer, got a "));
 }
 
 TEST_CASE("a query file may name meshes outside its folder") {
@@ -72,16 +74,6 @@ TEST_CASE("a query file may name meshes outside its folder") {
                             {"queries", nlohmann::json::array()}};
   std::vector<std::string> warnings;
   CHECK(QueryFile(folder.write("sub/q.json", file.dump()), warnings).all().meshes.size() == 2);
-}
-
-TEST_CASE("a mesh file that crashes assimp costs an error message") {
-  const ScratchFolder folder;
-  folder.write("a.bin", cornerBytes());
-  // Nodes nested so deeply that assimp's recursion overflows the stack.
-  std::string nodes;
-  for (int i = 0; i < 100'000; ++i) nodes += "{\"children\": [" + std::to_string(i + 1) + "]}, ";
-  const std::string deep = folder.write("deep.gltf", gltf(nodes + "{\"mesh\": 0}"));
-  CHECK_THAT(refusalOf(deep), Contains("deep.gltf: expected a mesh file that assimp reads, but it "));
 }
 
 TEST_CASE("a binary PLY file on which assimp crashes or never ends is refused") {
@@ -132,15 +124,15 @@ TEST_CASE("damaged OBJ, STL, PLY and OFF files are read or refused, and name no 
   CHECK(refused > 1000);
 }
 
-TEST_CASE("nodes may be nested a thousand deep") {
+TEST_CASE("nodes may be nested a hundred thousand deep") {
   const ScratchFolder folder;
   folder.write("a.bin", cornerBytes());
   std::string nodes;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 100'000; ++i) {
     nodes += "{\"translation\": [1, 0, 0], \"children\": [" + std::to_string(i + 1) + "]}, ";
   }
   const MeshData mesh = readWhole(folder.write("a.gltf", gltf(nodes + "{\"mesh\": 0}")));
-  CHECK(mesh.positions == std::vector<float>{1000, 0, 0, 1001, 0, 0, 1000, 1, 0});
+  CHECK(mesh.positions == std::vector<float>{1e5f, 0, 0, 100001, 0, 0, 1e5f, 1, 0});
 }
 
 TEST_CASE("nodes that place a mesh too often are refused before it is copied, and an assembly shares it") {

@@ -5,7 +5,7 @@
 
 #include "batch/answer_rows.h"
 #include "batch/columns.h"
-#include "batch/json_input.h"
+#include "import/json_input.h"
 #include "batch/mapped_file.h"
 
 namespace radar::tools {

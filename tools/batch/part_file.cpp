@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
-#include "batch/json_input.h"
+#include "import/json_input.h"
 #include "batch/json_output.h"
 #include "batch/mapped_file.h"
 

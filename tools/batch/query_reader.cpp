@@ -10,7 +10,7 @@
 #include <span>
 #include <unordered_set>
 
-#include "batch/json_input.h"
+#include "import/json_input.h"
 #include "batch/query_file.h"
 #include "batch/query_reader.h"
 #include "import/mesh_import.h"

@@ -8,7 +8,6 @@
 #include <map>
 #include <new>
 
-#include "import/gltf_poses.h"
 #include "import/readers.h"
 
 namespace radar::tools {
@@ -37,7 +36,7 @@ class ImportLog : public Assimp::LogStream {
   std::vector<std::string>& lines_;
 };
 
-/// Files may name others, such as buffers of glTF: a device or a pipe among them would be read for ever.
+/// Files may name others: a device or a pipe among them would be read for ever.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override {
@@ -78,22 +77,21 @@ MeshFile::Part partFrom(const aiMesh& mesh) {
   return part;
 }
 
-MeshFile meshFileFrom(const aiScene& scene, const GltfPoses& poses) {
+MeshFile meshFileFrom(const aiScene& scene) {
   MeshFile file;
   std::map<unsigned, uint32_t> parts;  // assimp's mesh -> part
   struct Entry {
     const aiNode* node;
     Transform fileFromParent;
-    GltfPoses::Node gltf;
   };
   // No recursion: a file may nest its nodes as deeply as it likes.
-  std::vector<Entry> open{{scene.mRootNode, {}, poses.root()}};
+  std::vector<Entry> open{{scene.mRootNode, {}}};
   while (!open.empty()) {
-    const auto [node, fileFromParent, gltf] = open.back();
+    const auto [node, fileFromParent] = open.back();
     open.pop_back();
-    const Transform fileFromNode = product(fileFromParent, gltf.pose(transformFrom(node->mTransformation)));
+    const Transform fileFromNode = product(fileFromParent, transformFrom(node->mTransformation));
     for (unsigned i = node->mNumChildren; i > 0; --i) {
-      open.push_back({node->mChildren[i - 1], fileFromNode, gltf.child(i - 1, node->mNumChildren)});
+      open.push_back({node->mChildren[i - 1], fileFromNode});
     }
     if (node->mNumMeshes == 0) continue;
     MeshFile::Node& to = file.nodes.emplace_back();
@@ -137,7 +135,7 @@ MeshFile readWithAssimp(const std::filesystem::path& file) {
   if (format != nullptr && std::string_view(format->mName) == "Collada Importer") {
     scene->mRootNode->mTransformation = aiMatrix4x4();
   }
-  return meshFileFrom(*scene, GltfPoses(file));
+  return meshFileFrom(*scene);
 }
 
 }  // namespace radar::tools

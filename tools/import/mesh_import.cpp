@@ -15,6 +15,7 @@
 
 #include "child/in_child.h"
 #include "import/faces.h"
+#include "import/gltf_document.h"
 #include "import/readers.h"
 #include "import/regular_file.h"
 
@@ -79,8 +80,9 @@ void requireUtf8(const std::string& file, const std::string& extension, std::str
 
 MeshFile readFile(const std::filesystem::path& file) {
   using Reader = MeshFile (*)(Text);
-  static const std::map<std::string, Reader> kReaders{
-      {".obj", readObj}, {".stl", readStl}, {".ply", readPly}, {".off", readOff}, {".3mf", readThreeMf}};
+  static const std::map<std::string, Reader> kReaders{{".obj", readObj},  {".stl", readStl},     {".ply", readPly},
+                                                      {".off", readOff},  {".3mf", readThreeMf}, {".gltf", readGltf},
+                                                      {".glb", readGltf}};
   const std::string name = file.string();
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -95,6 +97,7 @@ MeshFile readFile(const std::filesystem::path& file) {
   std::string_view text = content;
   requireUtf8(name, extension, text);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (reader->second == readGltf && isGltf1(text)) return readInChild(file);
   return reader->second({name, text});
 }
 
@@ -125,20 +128,6 @@ std::array<double, 3> placed(const Transform& pose, const double* p) {
   for (size_t i = 0; i < 3; ++i)
     result[i] = ((m[4 * i] * p[0] + m[4 * i + 1] * p[1]) + m[4 * i + 2] * p[2]) + m[4 * i + 3];
   return result;
-}
-
-/// Whether a pose turns a mesh inside out.
-bool mirrors(const Transform& pose) {
-  double rows[3][3];  // scaled, so that products neither overflow nor underflow
-  for (unsigned row = 0; row < 3; ++row) {
-    double most = 0;
-    for (unsigned k = 0; k < 3; ++k) most = std::fmax(most, std::abs(pose.m[4 * row + k]));
-    if (most == 0) return false;
-    for (unsigned k = 0; k < 3; ++k) rows[row][k] = pose.m[4 * row + k] / most;
-  }
-  const auto& [a, b, c] = rows;
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]) <
-         0;
 }
 
 /// The triangles of nodes of a file, as one mesh.

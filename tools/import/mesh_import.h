@@ -49,10 +49,11 @@ MeshName splitMeshName(const std::filesystem::path& name);
 /// than three corners are split: into a fan from their first corner, if it does not leave the face, else by cutting
 /// corners off. A warning counts those that are not plane or cross themselves. Points and lines are dropped and counted
 /// in a warning. Triangles that a mirroring transform places are wound the other way round, so that what is outside stays
-/// outside. No vertex is joined, moved or left out, no face removed. With a FILE#NODE, reads that node's meshes
+/// outside. No vertex is joined or moved, no face removed, and only of glTF
+/// are unused vertices left out. With a FILE#NODE, reads that node's meshes
 /// only, in the node's own frame.
 ///
-/// Files whose names end in .obj, .stl, .ply, .off or .3mf are read here: a number in text becomes the nearest double.
+/// OBJ, STL, PLY, OFF, 3MF and glTF 2 are read here: a number in text becomes the nearest double.
 /// Assimp reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it
 /// makes of them.
 ///

@@ -1,4 +1,4 @@
-// The readers of OBJ, STL, PLY, OFF and 3MF, whose numbers become the nearest doubles, and that of all other formats.
+// The readers of OBJ, STL, PLY, OFF, 3MF and glTF 2, whose numbers become the nearest doubles, and that of all other formats.
 //
 // A file that ends early, names a vertex that does not exist or is otherwise broken is refused with an InputError.
 #pragma once
@@ -30,6 +30,13 @@ MeshFile readOff(Text text);
 /// materials are ignored. Refuses extensions that a reader must know, but those of materials and of production without
 /// paths.
 MeshFile readThreeMf(Text text);
+
+/// glTF 2, text or binary, with its buffers beside it or within. A node for each node with a mesh, or for each instance
+/// that EXT_mesh_gpu_instancing gives it; a part for each primitive, of the vertices that its triangles use, numbered
+/// as they are first used. Applies default weights of morph targets and skins as their joints stand; animations are
+/// ignored. Reads all component types, normalised (KHR_mesh_quantization) and sparse ones, too. Refuses what is
+/// compressed, if nothing else is there, and extensions that are required and not known, by name.
+MeshFile readGltf(Text text);
 
 /// A file of another format, by assimp. May crash or run for ever on a broken file; throws std::bad_alloc, too.
 MeshFile readWithAssimp(const std::filesystem::path& file);

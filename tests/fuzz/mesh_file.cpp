@@ -1,4 +1,5 @@
-// Fuzzes the readers of OBJ, STL, PLY and OFF. The first byte of an input chooses the format, the rest is the file.
+// Fuzzes the readers of OBJ, STL, PLY, OFF and glTF. The first byte of an input chooses the format, the rest is the
+// file.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +15,7 @@ namespace {
 using tools::Assembly;
 using tools::MeshData;
 
-constexpr const char* kFormats[] = {".obj", ".stl", ".ply", ".off"};
+constexpr const char* kFormats[] = {".obj", ".stl", ".ply", ".off", ".gltf"};
 
 /// The corners of all triangles, in order.
 void appendCorners(const MeshData& mesh, std::vector<float>& corners) {
@@ -39,7 +40,7 @@ void checkMessage(const std::string& words) {
 void run(std::string_view input) {
   static const test::ScratchFolder folder;
   if (input.empty()) return;
-  const auto format = static_cast<unsigned char>(input[0]) % std::size(kFormats);
+  const auto format = static_cast<unsigned char>(input[0] - '0') % std::size(kFormats);
   const std::string name = std::string("a") + kFormats[format];
   // Some file systems write a file that is overwritten to the disk at once.
   std::filesystem::remove(folder.path() / name);
@@ -52,7 +53,8 @@ void run(std::string_view input) {
     return checkMessage(error.what());
   }
   checkMesh(mesh);
-  // The parts of an assembly have the same triangles, since no node of these formats is moved.
+  if (name == "a.gltf") return;
+  // The parts of an assembly have the same triangles, since no node of the other formats is moved.
   const Assembly assembly = tools::readAssembly(file, warnings);
   const auto isMoved = [](const Assembly::Part& part) { return part.fileFromMesh != Transform{}; };
   // Bases are those of the parts.
@@ -79,6 +81,10 @@ std::vector<std::string> seeds() {
     const auto format = std::ranges::find(kFormats, std::filesystem::path(name).extension()) - std::begin(kFormats);
     seeds.push_back(static_cast<char>('0' + format) + content);
   }
+  for (const char* name : {"BoxTextured-glTF-Embedded/BoxTextured.gltf", "simple_skin/simple_skin.gltf",
+                           "BoxTextured-glTF-Binary/BoxTextured.glb"}) {
+    seeds.push_back('4' + tools::readRegularFile(models + "glTF2/" + name, "a model"));
+  }
   std::string binaryStl(84 + 50, '\0');
   binaryStl[80] = 1;
   seeds.push_back('1' + binaryStl);
@@ -98,7 +104,8 @@ constexpr const char* kWords =
     "ply\n~format ascii 1.0\n~format binary_little_endian 1.0\n~format binary_big_endian 1.0\n~"
     "element vertex ~element face ~property list uchar int vertex_indices\n~property float x\n~"
     "property double y\n~end_header\n~tristrips~4OFF\n~STOFF\n~#~-1~4294967295~4294967296~"
-    "18446744073709551615~1e999~1e-999~nan~inf~0x1p3~\n~\xef\xbb\xbf~\xff\xff\xff\xff";
+    "18446744073709551615~\"sparse\":{~\"skin\":0~\"children\":[0]~\"byteStride\":~\"normalized\":true~5120~5126~1e999~"
+    "1e-999~nan~inf~0x1p3~\n~\xef\xbb\xbf~\xff\xff\xff\xff";
 
 }  // namespace
 

@@ -123,7 +123,7 @@ std::string withoutPercents(const std::string& uri) {
 bool isKnown(const std::string& extension) {
   if (extension == "KHR_mesh_quantization" || extension == "EXT_mesh_gpu_instancing") return true;
   for (const char* prefix : {"KHR_materials_", "EXT_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
-                             "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_techniques_webgl"}) {
+                             "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_technique"}) {
     if (extension.starts_with(prefix)) return true;
   }
   return false;
@@ -171,7 +171,7 @@ GltfDocument::GltfDocument(Text text) : file_(text.file()) {
   if (!version.string().starts_with("2.")) version.expected("version 2.0");
   top.ifHas("extensionsRequired", [](const JsonValue& list) {
     list.forEach([](const JsonValue& name) {
-      if (!isKnown(name.string())) name.expected("no required extension that is not known here");
+      if (!isKnown(name.string())) name.expected("a required extension that is read here");
     });
   });
 }

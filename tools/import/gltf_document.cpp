@@ -195,8 +195,9 @@ std::string_view GltfDocument::buffer(const JsonValue& number, const char* compr
           const std::filesystem::path folder = std::filesystem::path(file_).parent_path();
           std::error_code error;
           const bool isPlain = std::filesystem::exists(folder / uri, error);
-          value.guard(
-              [&] { found->second = readRegularFile(folder / (isPlain ? uri : withoutPercents(uri)), "a buffer"); });
+          const std::filesystem::path path = folder / (isPlain ? uri : withoutPercents(uri));
+          if (!std::filesystem::is_regular_file(path, error)) value.expected("data, or the name of a regular file");
+          found->second = readRegularFile(path, "a buffer");
         }
       }
       bytes = found->second;

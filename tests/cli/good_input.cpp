@@ -265,6 +265,17 @@ TEST_CASE("sweep lifts a crate from the floor that it rests on") {
   CHECK_THAT(runProgram(folder, sweep + " --ignore-leaving").out, Contains("clear"));
 }
 
+TEST_CASE("sweep says that surfaces meet only where nobody has asked for a distance") {
+  const ScratchFolder folder;
+  folder.write("plate.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
+  const std::string sweep = "sweep plate.obj plate.obj --mode reference --direction 0 0 1 --distance 5 --at 0 0 ";
+  CHECK_THAT(runProgram(folder, sweep + "0").out, Contains("overlap: the surfaces meet at the start already"));
+  CHECK_THAT(runProgram(folder, sweep + "0.05 --clearance 0.1").out,
+             Contains("overlap: the surfaces are within 0.1 of each other at the start already"));
+  CHECK_THAT(runProgram(folder, sweep + "0.2 --clearance 0.1").out,
+             Contains("clear: certainly nothing nearer than 0.1 within 5"));
+}
+
 TEST_CASE("query answers steps in which objects move and meshes are deformed") {
   const ScratchFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");

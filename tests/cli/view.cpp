@@ -31,14 +31,20 @@ TEST_CASE("a page is the same whether its answers are found, or read as lines or
   folder.write("a.obj", kTriangle);
   folder.write("steps.json",
                queryFile(query("up", R"("motion": [0, 0, 10])") + "," + query("down", R"("motion": [0, 0, -1])") + "," +
-                         query("any", R"("motion": [0, 0, 9], "decide": true)")));
+                         query("any", R"("motion": [0, 0, 9], "decide": true)") + "," +
+                         query("near", R"("dir": [0, 0, 1], "D": 8, "clearance": 0.5)")));
+  // Records cannot list what overlaps.
+  folder.write("left.json", queryFile(query("free", R"("dir": [0, 0, 1], "D": 8, "skip_overlapping": true)") + "," +
+                                      R"({"id": "left out", "scene": 0, "sensor": [0, 1,0,0,1, 0,0,-1,1, 0,1,0,3],
+                                          "dir": [0, 0, 1], "D": 8, "skip_overlapping": true})"));
   REQUIRE(runProgram(folder, "workload soup --objects 40 --sensors 50 --out soup").status == 0);
   REQUIRE(runProgram(folder, "workload figure7 --teapots 3 --boxes 40 --steps 2 --out flight").status == 0);
-  for (const std::string file : {"steps.json", "soup/queries.json", "flight/queries.json"}) {
+  for (const std::string file : {"flight/queries.json", "soup/queries.json", "steps.json", "left.json"}) {
     CAPTURE(file);
     REQUIRE(runProgram(folder, "view " + file + " --mode reference --out found.html").status == 0);
     for (const std::string answers : {"answers.jsonl", "answers.npy"}) {
       CAPTURE(answers);
+      if (file == "left.json" && answers == "answers.npy") continue;
       REQUIRE(runProgram(folder, "query " + file + " --mode reference --out " + answers).status == 0);
       const Run run = runProgram(folder, "view " + file + " " + answers + " --out read.html");
       INFO(run.err);
@@ -46,7 +52,10 @@ TEST_CASE("a page is the same whether its answers are found, or read as lines or
       CHECK(folder.read("read.html") == folder.read("found.html"));
     }
   }
+  CHECK(pageData(folder.read("found.html"))["left"] == nlohmann::json::parse(R"({"1": [0]})"));
+  REQUIRE(runProgram(folder, "view flight/queries.json --mode reference --out found.html --title Flight").status == 0);
   const auto data = pageData(folder.read("found.html"));
+  CHECK(data["title"] == "Flight");
   CHECK(data["queries"]["count"] == 6);
   CHECK(data["scenes"].size() == 3);
   CHECK(data["queries"]["ignored"]["2"] == nlohmann::json({42}));
@@ -71,7 +80,7 @@ TEST_CASE("what is too much for a page is cut, and the page says so") {
   const auto data = pageData(folder.read("w.html"));
   CHECK(data["queries"]["count"] == 10'000);
   CHECK(data["notes"] == nlohmann::json({"The first 10000 of 10001 queries.",
-                                         "Scene boxes: 100000 of 100001 objects, with all that are touched."}));
+                                         "Scene boxes: 100000 of 100001 objects, with all that answers name."}));
 }
 
 TEST_CASE("answers that are not those of the queries are refused") {
@@ -114,6 +123,12 @@ TEST_CASE("answers that are not those of the queries are refused") {
   checkRefused(folder, "view q.json --out a.obj", "--out: a.obj: expected another file than those");
   checkRefused(folder, "view q.json --out nowhere/page.html", "--out: nowhere/page.html: expected");
   checkRefused(folder, "view q.json", "--out");
+  checkRefused(folder, "view q.json good.jsonl --mode sampled --out page.html", "--mode: expected it only where");
+  checkRefused(folder, "view q.json good.jsonl --threads 1 --out page.html", "--threads: expected it only where");
+  checkRefused(folder, "view q.json good.jsonl --gltf q.glb --title Q", "--title: expected it with --out");
+  // What is too large for a double is null.
+  folder.write("huge.jsonl", changed("\"point\": [", "\"point\": [1e308, null, 0], \"was\": ["));
+  CHECK(runProgram(folder, "view q.json huge.jsonl --out huge.html").status == 0);
   checkRefused(folder, "sweep a.obj a.obj --direction 0 0 1 --distance 1 --view a.obj",
                "--view: a.obj: expected another");
 }

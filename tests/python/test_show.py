@@ -48,6 +48,19 @@ def test_a_page_has_the_casts_and_the_scene(tmp_path):
     assert numbers(part["answers"]["t"]).tolist() == [4.0, 1.0]
 
 
+def test_a_page_knows_what_was_asked_and_left_out(tmp_path):
+    scene, cube = row()
+    starts = at([[0, 0, 0], [5.5, 0.5, 0.5]])
+    casts = scene.cast(cube, starts, [20.0, 0, 0], skip_overlapping=True, clearance=0.25)
+    shown = page_data(casts.show(tmp_path / "page.html"))
+    assert shown["left"] == {"1": [0]}
+    assert numbers(shown["queries"]["clearance"]).tolist() == [0.25, 0.25]
+    assert numbers(shown["queries"]["any"]).tolist() == [0, 0]
+    assert page_data(casts[1:].show(tmp_path / "part.html"))["left"] == {"0": [0]}
+    whether = page_data(scene.cast(cube, starts, [20.0, 0, 0], any_hit=True).show(tmp_path / "any.html"))
+    assert numbers(whether["queries"]["any"]).tolist() == [1, 1] and whether["left"] == {}
+
+
 def test_distances_are_ways_and_names_and_motions_are_shown(tmp_path):
     scene, cube = row()
     scene.set_motions([0], [0.0, 0, 1])

@@ -80,7 +80,7 @@ TEST_CASE("a glTF file has every object where it is, and every sensor on its way
   Scene scene;
   replaceBy(workload, 0, scene);
   const std::vector<Result> answers = CpuSweeper(scene).run(queriesOf(workload.queries)).results;
-  const Loaded loaded(gltfOf(workload, answers));
+  const Loaded loaded(gltfOf(workload, answers, {}).bytes);
 
   for (uint32_t i = 0; i < 30; ++i) {
     const Instance& instance = workload.instance(0, i);
@@ -120,8 +120,42 @@ TEST_CASE("meshes are stored once, whatever their statuses, but deformed or shea
   Scene scene;
   replaceBy(workload, 1, scene);
   const std::vector<Result> answers(workload.queries.size());
-  const std::string bytes = gltfOf(workload, answers);
+  const std::string bytes = gltfOf(workload, answers, {}).bytes;
   CHECK(bytes.size() < 400'000);  // a teapot has 120,000
   const Loaded loaded(bytes);
   CHECK(loaded.nodes.contains("object 55"));
+}
+
+TEST_CASE("a glTF file of many queries and objects is cut as a page is, and says so") {
+  Workload workload = makeWorkload(Soups{.objects = 5, .sensors = 1});
+  const QuerySpec query = workload.queries.front();
+  const Instance instance = workload.scenes[0].instances.front();
+  workload.queries.assign(kMostShownQueries + 1, query);
+  for (size_t i = 0; i < workload.queries.size(); ++i) workload.queries[i].id = std::to_string(i);
+  workload.scenes[0].instances.assign(100'002, instance);
+  std::vector<Result> answers(workload.queries.size(), Result(Status::clear));
+  answers[0] = Result(Status::hit);
+  answers[0].object = 100'001;
+  const Gltf file = gltfOf(workload, answers, {{1, {100'000}}});
+  CHECK(file.notes == std::vector<std::string>{"The first 10000 of 10001 queries.",
+                                               "Scene " + workload.scenes[0].id +
+                                                   ": 100000 of 100002 objects, with all that answers name."});
+  CHECK(file.bytes.find(file.notes[1]) != std::string::npos);
+  CHECK(file.bytes.find("\"sensor 9999\"") != std::string::npos);
+  CHECK(file.bytes.find("\"sensor 10000\"") == std::string::npos);
+  CHECK(file.bytes.find("\"object 100001\"") != std::string::npos);
+  CHECK(file.bytes.find("\"object 100000\"") != std::string::npos);
+  CHECK(file.bytes.find("\"object 99999\"") == std::string::npos);
+}
+
+TEST_CASE("a glTF file does not let a sensor go where nobody has asked how far it can") {
+  Workload workload = makeWorkload(Soups{.objects = 5, .sensors = 1});
+  workload.queries.resize(1);
+  QuerySpec& query = workload.queries[0];
+  Result answer(Status::hit);
+  answer.t = query.distance;
+  query.anyHit = true;
+  CHECK(Course(query).share(answer) == 0);
+  query.anyHit = false;
+  CHECK(Course(query).share(answer) == 1);
 }

@@ -155,6 +155,8 @@ def is_like(colour, name):
         "hit": red > 1.6 * green > 3 * blue,
         "object": max(colour) < 1.35 * min(colour),
         "touched": blue > 1.3 * red,
+        "touched glass": red > 150 and blue > red + 30,
+        "left out glass": red > 1.2 * green and blue > 1.1 * green,
     }[name]
 
 
@@ -175,12 +177,12 @@ def test_the_chosen_sensor_is_drawn_where_the_answer_says(view):
     view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
     # Places on the sides that the camera sees.
     assert is_like(view.colour_at((-2 + 0.5, -1, 0.6)), "hit")  # it stops at x = -2
-    assert is_like(view.colour_at((0.5, -1, 0.6)), "touched")
+    assert is_like(view.colour_at((0.5, -1, 0.6)), "touched glass")  # it would hide the contact
     assert not is_like(view.colour_at((-9 + 0.5, -1, 0.6)), "hit")  # where it starts, it is like glass
     view.run("view.whole(false)")
     assert is_like(view.colour_at((10.5, -1, 0.6)), "object")
     words = view.browser.find_element(By.ID, "chosen").text
-    assert "Free for 7, then it touches object 0." in words
+    assert "Free for 7, then it touches object 0 (cube.obj)." in words
 
 
 def test_it_says_which_objects_take_no_part(view):
@@ -225,13 +227,12 @@ def test_a_click_chooses_what_is_under_it(view):
     view.browser.find_element(By.CSS_SELECTOR, ".room .row").click()
     view.wait("!view.flight && !view.stale")
     assert view.run("return view.look.chosen") == 0
-    assert view.run("return view.camera.target[0]") == pytest.approx(-3.5)
+    assert view.run("return view.camera.target[0]") == pytest.approx(-2.5)  # from where it starts to the end of what it touches
 
 
 def test_keys_choose_and_play(view):
     body = view.browser.find_element(By.TAG_NAME, "body")
-    body.send_keys(Keys.ARROW_DOWN)
-    assert view.run("return view.look.chosen") == 0
+    assert view.run("return view.look.chosen") == 0  # the first hit
     body.send_keys(Keys.ARROW_DOWN)
     assert view.run("return view.look.chosen") == 1
     view.wait("!view.flight")
@@ -302,13 +303,140 @@ def test_objects_move_and_deform_and_steps_have_scenes_of_their_own(browser, tmp
     batch = {"format": "cyber-radar-queries-1", "meshes": ["cube.ply"], "scenes": scenes, "queries": queries}
     view = View(browser, write_page(tmp_path, batch, "--mode", "reference"))
     view.choose(0)
-    assert "Free for 0.5 of the step, then it touches object 1." in view.browser.find_element(By.ID, "chosen").text
+    assert "Free for 0.5 of the step, then it touches object 1 (cube.ply)." in view.browser.find_element(By.ID, "chosen").text
     view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
     assert is_like(view.colour_at((16 + 0.5, -1, 0.6)), "hit")
-    assert is_like(view.colour_at((18 + 0.5, -1, 0.6)), "touched")  # halfway through the step
+    assert is_like(view.colour_at((18 + 0.5, -1, 0.6)), "touched glass")  # halfway through the step
     view.choose(1)
     assert view.run("return view.data.scene(view.look.scene).objects.count") == 3
     view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
     assert view.rows()[1][2] == "2"
     assert is_like(view.colour_at((2.5, 37, 2.5)), "touched")  # three times as large
+    assert view.errors() == []
+
+
+def words_of(view, query):
+    view.choose(query)
+    return view.browser.find_element(By.ID, "chosen").text
+
+
+def legend(view):
+    return view.browser.find_element(By.ID, "legend").text
+
+
+def test_an_answer_to_whether_there_is_a_contact_says_no_more(browser, tmp_path):
+    queries = [
+        {"id": "whether", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10, "decide": True},
+        {"id": "near", "sensor": at(0, -5, 2.5, 0), "dir": [1, 0, 0], "D": 10, "decide": True, "clearance": 0.75},
+    ]
+    view = View(browser, make_page(tmp_path, queries))
+    assert view.run("return [view.camera.distance, ...view.camera.target].every(Number.isFinite)")
+    assert "Touches something within 10." in words_of(view, 0)
+    assert "Comes within 0.75 of something within 10." in words_of(view, 1)
+    assert [row[2:] for row in view.rows()] == [["≤ 10", "", ""]] * 2
+    view.choose(0)
+    view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    assert is_like(view.colour_at((-5 + 0.5, -1, 0.6)), "hit")  # where it starts: where it stops was not asked
+    assert view.errors() == []
+
+
+def test_a_gap_is_no_contact_and_is_drawn_with_its_length(browser, tmp_path):
+    queries = [
+        {"id": "comes near", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10, "clearance": 0.75},
+        {"id": "is near", "sensor": at(0, -2.5, 0, 0), "dir": [1, 0, 0], "D": 10, "clearance": 0.75},
+        {"id": "passes", "sensor": at(0, -5, 5, 0), "dir": [1, 0, 0], "D": 10, "clearance": 0.75},
+    ]
+    view = View(browser, make_page(tmp_path, queries))
+    # As if an answer had the length, and as if it had not.
+    for gaps in ("[0.75, 0.5, NaN]", "[NaN, NaN, NaN]"):
+        view.run(f"view.data.answers.gap = new Float64Array({gaps}); view.overlay.key = null; view.change()")
+        comes = words_of(view, 0)
+        assert "Comes within 0.75 of object 0 (cube.obj) after 2.25." in comes
+        assert ("The gap is then 0.75 long" in comes) == (gaps != "[NaN, NaN, NaN]")
+        labels = view.browser.find_element(By.ID, "labels").text
+        assert ("0.75" in labels) == (gaps != "[NaN, NaN, NaN]")
+        assert ("the gap" in legend(view)) == (gaps != "[NaN, NaN, NaN]")
+        assert "Is within 0.75 of object 0 (cube.obj) at the start already." in words_of(view, 1)
+        assert "Comes within 0.75 of nothing, within 10." in words_of(view, 2)
+        for query in range(3):
+            words = words_of(view, query)
+            assert not any(word in words.lower() for word in ("touch", "meet", "contact"))
+    assert view.errors() == []
+
+
+def test_objects_left_out_are_named_and_drawn_as_glass(browser, tmp_path):
+    queries = [
+        {"id": "stuck", "sensor": at(0, 10.5, 0.5, 0.5), "dir": [0, 0, 1], "D": 5, "skip_overlapping": True},
+        {"id": "free", "sensor": at(0, 10, 50, 0), "dir": [0, 0, 1], "D": 5, "skip_overlapping": True},
+    ]
+    view = View(browser, make_page(tmp_path, queries))
+    assert [row[0] for row in view.rows()] == ["○ clear, 1 left out", "○ clear"]
+    words = words_of(view, 0)
+    assert "Crosses object 1 (cube.obj) where it starts; left out" in words and "Touches nothing else within 5." in words
+    assert "object 1 (cube.obj), left out" in view.browser.find_element(By.ID, "labels").text
+    view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    assert is_like(view.colour_at((9.2, -1, -0.6)), "left out glass")
+    assert "left out" not in words_of(view, 1)
+    assert view.errors() == []
+
+
+def test_what_is_far_away_is_counted_and_does_not_shrink_the_rest(browser, tmp_path):
+    (tmp_path / "cube.obj").write_text(CUBE)
+    scenes = [{"instances": [at(0, 0, 0, 0), at(0, 10, 0, 0), at(0, 1e6, 0, 0), [0, 1, 0, 0, 1e200, 0, 1, 0, 0, 0, 0, 1, 0]]}]
+    queries = [
+        {"id": "hits", "scene": 0, "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10},
+        {"id": "free", "scene": 0, "sensor": at(0, -5, 5, 0), "dir": [1, 0, 0], "D": 1e9},
+    ]
+    batch = {"format": "cyber-radar-queries-1", "meshes": ["cube.obj"], "scenes": scenes, "queries": queries}
+    view = View(browser, write_page(tmp_path, batch, "--mode", "reference"))
+    far = view.browser.find_element(By.ID, "far")
+    assert far.text == "2 objects far away"
+    view.run("view.whole(false)")
+    view.wait("!view.stale")
+    assert view.run("return view.camera.distance") < 200
+    far.click()
+    view.wait("!view.flight && !view.stale")
+    assert view.run("return view.camera.distance") > 1e6  # what a picture can hold
+    assert view.errors() == []
+
+
+def test_a_sensor_that_hides_its_contact_is_glass(view):
+    view.choose(4)  # it stands at x = 33 and touches the cube at x = 30, seen from beyond it
+    _, y, z = view.run("return view.data.vector('point', 4)")  # a corner; seen through the sensor
+    view.run("Object.assign(view.camera, arguments[0]); view.change()", {"yaw": -0.2 * y, "pitch": -0.3 * z})
+    view.wait("!view.stale")
+    assert view.run("return view.stage.items.filter((item) => item.placed === view.data.sensors && item.i === 4).length") == 0
+    view.run("view.camera.yaw = 3; view.change()")
+    view.wait("!view.stale")
+    assert view.run("return view.stage.items.filter((item) => item.placed === view.data.sensors && item.i === 4).length") == 1
+
+
+def test_a_legend_a_scale_and_axes_say_what_is_seen(view):
+    assert legend(view).splitlines()[:3] == ["● hit", "○ clear", "✕ overlap"]
+    view.run("view.look.by = 't'; view.change()")
+    view.wait("!view.stale")
+    assert "t = 7" in legend(view)
+    length, width = view.run("return [Number(view.overlay.scale.textContent), view.overlay.scale.getBoundingClientRect().width]")
+    camera, height = view.run("return [view.camera, view.canvas.clientHeight]")
+    assert width == pytest.approx(length * height / (2 * math.tan(math.pi / 9) * camera["distance"]), abs=1)
+    assert view.run("return view.overlay.axes.getContext('2d').getImageData(0, 0, 72, 72).data.some((x) => x > 0)")
+
+
+def test_heads_stand_over_their_columns_beside_a_scrollbar(browser, tmp_path):
+    queries = [{**QUERIES[0], "id": f"{i}"} for i in range(200)]
+    view = View(browser, make_page(tmp_path, queries))
+    ends = view.run(
+        "return ['.heads', '.room .row'].map((row) => [...document.querySelector(row).children].map((c) => c.getBoundingClientRect().right))"
+    )
+    assert ends[0] == pytest.approx(ends[1], abs=0.6)
+    # Colours by t look at each answer once.
+    calls = """
+        let calls = 0;
+        const time = view.data.time;
+        view.data.time = (query) => (++calls, time.call(view.data, query));
+        view.data.latestTime = undefined;
+        view.look.by = 't';
+        view.draw(1e6);
+        return calls;"""
+    assert view.run(calls) <= 3 * 200
     assert view.errors() == []

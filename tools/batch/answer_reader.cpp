@@ -43,6 +43,10 @@ Result resultOf(const RowReader& row, Status status, const Workload& workload, c
     const uint32_t touched = workload.instance(query.scene, result.object).mesh;
     result.triB = idIn(row, "tri_b", workload.meshes[touched].triangleCount(), file);
   }
+  const auto readGap = [&](auto& to) {
+    if constexpr (requires { to.gap; }) to.gap = row.number("gap", 0);
+  };
+  readGap(result);
   for (size_t k = 0; k < 3; ++k) {
     result.point[k] = row.number("point", k);
     result.normal[k] = row.number("normal", k);
@@ -73,11 +77,16 @@ std::vector<Answer> readLines(const std::string& file, std::string_view text, co
                           const JsonValue value = root.member(name);
                           if (!json[name].is_array()) return value.number();
                           if (value.size() != 3) value.expected("three numbers");
-                          return value[part].number();
+                          return value[part].json().is_null() ? NAN : value[part].number();  // too large for a double
                         }};
     Answer& answer = answers.emplace_back();
     const JsonValue status = root.member("status");
     answer.result = resultOf(row, status.guard([&] { return statusFrom(status.string()); }), workload, file);
+    root.ifHas("overlapping", [&](const JsonValue& list) {
+      const size_t objects = workload.objectCount(query.scene);
+      list.forEach(
+          [&](const JsonValue& object) { answer.listed.overlapping.push_back(object.index(objects, "objects")); });
+    });
     root.ifHas("reason", [&](const JsonValue& reason) { answer.reason = reason.string(); });
     if (root.has("paper_min_l")) answer.mode = AnswerMode::sampled;
   }
@@ -101,6 +110,7 @@ std::vector<Answer> readRecords(const std::string& file, const Workload& workloa
       throw InputError(file, place + ": status", "expected a number from 0 to 4, got " + std::to_string(code));
     }
     const RowReader row{place, workload.queries[i], [&](const std::string& name, size_t part) {
+                          if (name == "gap" && !columns.find("gap")) return double{NAN};  // a file of older answers
                           const Column& found = column(name.c_str(), name == "point" || name == "normal" ? 3 : 1);
                           if (found.kind == 'f') return found.real(i, part);
                           const uint64_t whole = found.whole(i);

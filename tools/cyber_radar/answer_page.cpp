@@ -50,14 +50,15 @@ void addSampled(PageContent& content, const Workload& workload, std::span<const 
     if (all[i].mode != AnswerMode::sampled || result.status == Status::invalid) continue;
     player.show(workload.queries[i].scene);
     Query query = workload.queries[i];
-    const bool isOwn = options.sampled.empty();
+    const bool isOwn = options.sampled.empty(), isAny = query.anyHit;
+    query.anyHit = false;
     if (isOwn) {
       const Result found = exact.run({&query, 1}).results[0];
       content.others[i] = {exactInWords(found), found};
     } else {
       content.others[i] = {sampledInWords(result, answers[i].result), result};
     }
-    if (!options.device || query.anyHit || pixels >= kMostPixels || result.resolution == 0) continue;
+    if (!options.device || isAny || pixels >= kMostPixels || result.resolution == 0) continue;
     if (!sampled) sampled.emplace(*options.device, player.scene());
     query.resolution = result.resolution;
     Scopes scopes = sampled->scopes(query);
@@ -68,18 +69,31 @@ void addSampled(PageContent& content, const Workload& workload, std::span<const 
 
 }  // namespace
 
+std::vector<Result> resultsOf(std::span<const Answer> answers) {
+  std::vector<Result> results;
+  for (const Answer& answer : answers) results.push_back(answer.result);
+  return results;
+}
+
+LeftOut leftOutOf(std::span<const Answer> answers) {
+  LeftOut left;
+  for (uint32_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i].listed.overlapping.empty()) left[i] = answers[i].listed.overlapping;
+  }
+  return left;
+}
+
 void writePage(const std::filesystem::path& file, const std::string& title, const Workload& workload,
                std::span<const Answer> answers, const PageOptions& options) {
   PageContent content;
   content.title = title;
   content.tour = options.tour;
-  std::vector<Result> results;
-  for (const Answer& answer : answers) {
-    if (!answer.reason.empty()) content.reasons[static_cast<uint32_t>(results.size())] = answer.reason;
-    results.push_back(answer.result);
+  content.left = leftOutOf(answers);
+  for (uint32_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i].reason.empty()) content.reasons[i] = answers[i].reason;
   }
   addSampled(content, workload, answers, options);
-  writeAtomically(file, pageOf(workload, results, content));
+  writeAtomically(file, pageOf(workload, resultsOf(answers), content));
 }
 
 }  // namespace radar::tools

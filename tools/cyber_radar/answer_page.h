@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cyber_radar/answering.h"
+#include "view/cut.h"
 
 namespace radar::tools {
 
@@ -15,6 +16,10 @@ struct PageOptions {
   std::span<const Answer> sampled;
   std::optional<uint32_t> tour;  ///< a query that is played when the page opens, before all are
 };
+
+std::vector<Result> resultsOf(std::span<const Answer> answers);
+/// What answers say they left out.
+LeftOut leftOutOf(std::span<const Answer> answers);
 
 /// Writes a page of all queries of a workload and their answers. Where one is of mode sampled, a sentence says what an
 /// exact search on the CPU finds; the scopes are shown, if there is a device, of the first queries as far as 16 MB go.

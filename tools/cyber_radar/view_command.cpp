@@ -22,7 +22,7 @@ constexpr const char* kExamples = R"(Examples:
 The page is one file, which any browser shows without a network: the scene, each sensor where it stops, and a table.)";
 
 struct Options {
-  std::string file, answers, out, gltf;
+  std::string file, answers, out, gltf, title;
   EngineOptions engine;
 };
 
@@ -59,14 +59,14 @@ int view(const Options& options) {
               << "\n";
   };
   if (!options.out.empty()) {
-    writePage(options.out, options.file, workload, answers, {.device = device});
+    writePage(options.out, options.title.empty() ? options.file : options.title, workload, answers, {.device = device});
     say(options.out);
   }
   if (!options.gltf.empty()) {
-    std::vector<Result> results;
-    for (const Answer& answer : answers) results.push_back(answer.result);
-    writeAtomically(options.gltf, gltfOf(workload, results));
+    const Gltf scene = gltfOf(workload, resultsOf(answers), leftOutOf(answers));
+    writeAtomically(options.gltf, scene.bytes);
     say(options.gltf);
+    printWarnings(scene.notes);
   }
   return someInvalid(answers) ? kStatusSomeInvalid : 0;
 }
@@ -83,8 +83,20 @@ void addViewCommand(CLI::App& app, int& status) {
   command->add_option("--out", options->out, "Where the page goes")->type_name("FILE.html");
   command->add_option("--gltf", options->gltf, "Writes an animated scene for Blender and others here, as glTF 2.0")
       ->type_name("FILE.glb");
+  command->add_option("--title", options->title, "Of the page; else the query file's name")->type_name("TEXT");
   options->engine.addTo(*command);
-  command->callback([options, &status] { status = view(*options); });
+  command->callback([options, command, &status] {
+    if (!options->answers.empty()) {
+      for (const char* name : {"--mode", "--resolution", "--device", "--cpu-batch", "--threads"}) {
+        if (command->count(name) == 0) continue;
+        throw InputError(name, "", "expected it only where answers are to be found, got " + options->answers + ", too");
+      }
+    }
+    if (options->out.empty() && command->count("--title") > 0) {
+      throw InputError("--title", "", "expected it with --out, whose page it names");
+    }
+    status = view(*options);
+  });
 }
 
 }  // namespace radar::tools

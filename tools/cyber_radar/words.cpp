@@ -64,9 +64,14 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
                                            : "exact, to rounding") +
              "\n" + contactInWords(workload, query, result);
     case Status::overlap:
-      return "overlap: the surfaces meet at the start already\n" + contactInWords(workload, query, result);
+      return "overlap: the surfaces " +
+             (query.clearance > 0 ? "are within " + inDigits(query.clearance) + " of each other"
+                                  : std::string("meet")) +
+             " at the start already\n" + contactInWords(workload, query, result);
     case Status::clear:
-      return "clear: certainly no contact within " + distance + "\n";
+      return "clear: certainly " +
+             (query.clearance > 0 ? "nothing nearer than " + inDigits(query.clearance) : std::string("no contact")) +
+             " within " + distance + "\n";
     case Status::undecided:
       if (query.clearance > 0) {
         return "undecided: passes at a distance of " + inDigits(query.clearance) + ", to rounding, after " +

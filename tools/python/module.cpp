@@ -325,13 +325,17 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
 /// What _engine.pyi says of page().
 std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
                       const std::string& title, uint64_t count, const std::vector<std::string>& names,
-                      const py::dict& arrays, const std::map<uint32_t, std::string>& reasons) {
+                      const py::dict& arrays, const std::map<uint32_t, std::string>& reasons,
+                      const tools::LeftOut& left) {
   const size_t shown = names.size();
-  ShownCasts casts{.count = count, .names = names, .answers = outputFrom(arrays, shown), .reasons = reasons};
+  ShownCasts casts{
+      .count = count, .names = names, .answers = outputFrom(arrays, shown), .reasons = reasons, .left = left};
   casts.meshes = output<uint32_t>(arrays, "mesh", shown);
   casts.poses = output<double>(arrays, "poses", 16 * shown);
   casts.directions = output<double>(arrays, "displacements", 3 * shown);
   casts.distances = output<double>(arrays, "distances", shown);
+  casts.clearances = output<double>(arrays, "clearance", shown);
+  casts.anyHit = output<uint8_t>(arrays, "any_hit", shown);
   const auto excluded = arrays["exclude_from_each"].cast<Array<int64_t>>();
   casts.excludedCount = static_cast<size_t>(excluded.shape(1));
   casts.excluded = excluded.data();

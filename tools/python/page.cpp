@@ -15,7 +15,7 @@ Workload workloadOf(const Scene& scene, const std::map<uint32_t, std::string>& o
   Workload workload;
   for (MeshId id = 0; id < scene.meshLimit(); ++id) {
     tools::MeshData& mesh = workload.meshes.emplace_back();
-    mesh.name = std::to_string(id);
+    mesh.name = "mesh " + std::to_string(id);
     if (!scene.hasMesh(id)) continue;
     const MeshView view = scene.mesh(id);
     mesh.positions.assign(view.positions.begin(), view.positions.end());
@@ -54,6 +54,8 @@ std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::stri
     std::copy_n(casts.poses + 16 * i, 12, query.worldFromMesh.m.begin());
     std::copy_n(casts.directions + 3 * i, 3, query.direction.begin());
     query.distance = casts.distances[i];
+    query.clearance = casts.clearances[i];
+    query.anyHit = casts.anyHit[i] != 0;
     for (size_t k = 0; k < casts.excludedCount; ++k) {
       const int64_t object = casts.excluded[casts.excludedCount * i + k];
       if (object >= 0) query.exclude.push_back(idFrom(object));
@@ -72,6 +74,7 @@ std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::stri
   content.title = title;
   content.queries = casts.count;
   content.reasons = casts.reasons;
+  content.left = casts.left;
   return tools::pageOf(workload, results, content);
 }
 

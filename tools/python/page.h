@@ -7,6 +7,7 @@
 
 #include "python/batch.h"
 #include "python/casting_scene.h"
+#include "view/cut.h"
 
 namespace radar::python {
 
@@ -16,10 +17,13 @@ struct ShownCasts {
   std::vector<std::string> names;
   const uint32_t* meshes = nullptr;
   const double *poses = nullptr, *directions = nullptr, *distances = nullptr;  ///< 16, 3, 1
-  const int64_t* excluded = nullptr;                                           ///< `excludedCount` of them
+  const double* clearances = nullptr;
+  const uint8_t* anyHit = nullptr;    ///< whether only that is known
+  const int64_t* excluded = nullptr;  ///< `excludedCount` of them
   size_t excludedCount = 0;
   BatchOutput answers{};
   std::map<uint32_t, std::string> reasons;  ///< by cast
+  tools::LeftOut left;                      ///< by cast
 };
 
 /// The page, HTML, of a scene as it is now.

@@ -13,8 +13,9 @@ namespace radar::tools {
 struct Course {
   Vec3 way{};
   double whole = 1;
+  bool isAny = false;
 
-  explicit Course(const QuerySpec& query) {
+  explicit Course(const QuerySpec& query) : isAny(query.anyHit) {
     if (query.motion) {
       way = *query.motion;
       return;
@@ -28,9 +29,10 @@ struct Course {
     way = (whole / lengthOf(scaled)) * scaled;
   }
 
-  /// The part of the way that the sensor can go, 0 to 1.
+  /// The part of the way that the sensor can go, 0 to 1; of a hit that only says whether (Query::anyHit), 0.
   double share(const Result& answer) const {
     if (answer.status == Status::clear) return 1;
+    if (isAny && answer.status == Status::hit) return 0;
     const double time = answer.status == Status::hit ? answer.t : answer.status == Status::undecided ? answer.lo : 0;
     return time > 0 && whole > 0 ? std::min(time / whole, 1.0) : 0;
   }

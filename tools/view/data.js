@@ -36,6 +36,24 @@ class Mesh {
       return [...this.positions.subarray(3 * vertex, 3 * vertex + 3)];
     });
   }
+  /** Whether a triangle crosses start + s * way, 0 < s < 0.998. */
+  isCrossed([sx, sy, sz], [wx, wy, wz]) {
+    const { positions: p, indices } = this;
+    // By T. Moeller and B. Trumbore (1997); without arrays that live for a triangle.
+    for (let t = 0; t < indices.length; t += 3) {
+      const a = 3 * indices[t], b = 3 * indices[t + 1], c = 3 * indices[t + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const nx = wy * vz - wz * vy, ny = wz * vx - wx * vz, nz = wx * vy - wy * vx, volume = ux * nx + uy * ny + uz * nz;
+      const x = sx - p[a], y = sy - p[a + 1], z = sz - p[a + 2], u = (x * nx + y * ny + z * nz) / volume;
+      if (!(u >= 0 && u <= 1)) continue;
+      const qx = y * uz - z * uy, qy = z * ux - x * uz, qz = x * uy - y * ux, v = (wx * qx + wy * qy + wz * qz) / volume;
+      if (!(v >= 0 && u + v <= 1)) continue;
+      const s = (vx * qx + vy * qy + vz * qz) / volume;
+      if (s > 0 && s < 0.998) return true;
+    }
+    return false;
+  }
   /** Pairs of points: the edges with one triangle, and those where two meet at more than 30 degrees. */
   creases() {
     this.creaseLines ??= creasesOf(this);
@@ -72,13 +90,13 @@ class Placed {
     this.radius = new Float64Array(this.count);
     for (let i = 0; i < this.count; ++i) {
       const { middle, half } = this.meshOf(i);
-      let square = 0;
+      const sides = [0, 0, 0];
       for (let k = 0; k < 3; ++k) {
         const row = linear.subarray(9 * i + 3 * k, 9 * i + 3 * k + 3);
         this.centre[3 * i + k] = at[3 * i + k] + dot(row, middle);
-        square += row.reduce((sum, value, j) => sum + Math.abs(value) * half[j], 0) ** 2;
+        sides[k] = row.reduce((sum, value, j) => sum + Math.abs(value) * half[j], 0);
       }
-      this.radius[i] = Math.sqrt(square);
+      this.radius[i] = lengthOf(sides);
     }
   }
   meshOf(i) {
@@ -86,6 +104,15 @@ class Placed {
   }
   centreOf(i) {
     return [...this.centre.subarray(3 * i, 3 * i + 3)];
+  }
+  /** Whether a triangle crosses a segment, short of its end. */
+  crosses(i, from, to) {
+    const linear = this.linear.subarray(9 * i, 9 * i + 9), rows = [0, 1, 2].map((k) => [...linear.subarray(3 * k, 3 * k + 3)]);
+    const [a, b, c] = rows, columns = [cross(b, c), cross(c, a), cross(a, b)], volume = dot(a, columns[0]);
+    if (!(Math.abs(volume) > 0)) return false;
+    const toLocal = (v) => [0, 1, 2].map((k) => (v[0] * columns[0][k] + v[1] * columns[1][k] + v[2] * columns[2][k]) / volume);
+    const start = toLocal(minus(from, this.at.subarray(3 * i, 3 * i + 3)));
+    return this.meshOf(i).isCrossed(start, toLocal(minus(to, from)));
   }
   toWorld(i, point) {
     return [0, 1, 2].map((k) => this.at[3 * i + k] + dot(this.linear.subarray(9 * i + 3 * k, 9 * i + 3 * k + 3), point));
@@ -126,22 +153,29 @@ class Data {
     own.moving.forEach((object, i) => ways.set(placed.place.get(object), own.ways.subarray(3 * i, 3 * i + 3)));
     return { meshes, objects: placed, ways };
   }
-  /** The diagonal of the box around a scene's objects and sensors. */
-  reach(number) {
+  /** What of a scene is near together, and how much is far from it: {bounds, far: {objects, sensors}}. */
+  extent(number) {
     const scene = this.scene(number);
-    return (scene.reach ??= this.reachOf(number, scene.objects));
+    return (scene.extent ??= this.extentOf(number, scene.objects));
   }
-  reachOf(number, objects) {
-    const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
-    const add = (placed, i) => {
-      for (let k = 0; k < 3; ++k) {
-        lo[k] = Math.min(lo[k], placed.centre[3 * i + k] - placed.radius[i]);
-        hi[k] = Math.max(hi[k], placed.centre[3 * i + k] + placed.radius[i]);
-      }
+  extentOf(number, objects) {
+    const things = [], add = (placed, i, way, isSensor) => {
+      const place = plus(placed.centreOf(i), times(0.5, way));
+      things.push({ place, radius: placed.radius[i] + 0.5 * lengthOf(way), isSensor });
     };
-    for (let i = 0; i < objects.count; ++i) add(objects, i);
-    for (let i = 0; i < this.queries.count; ++i) if (this.queries.scene[i] === number) add(this.sensors, i);
-    return lo[0] <= hi[0] ? lengthOf(minus(hi, lo)) : 1;
+    for (let i = 0; i < objects.count; ++i) add(objects, i, [0, 0, 0], false);
+    for (let i = 0; i < this.queries.count; ++i) {
+      if (this.queries.scene[i] !== number) continue;
+      const share = this.status(i) === "clear" ? 0 : this.share(i);
+      add(this.sensors, i, share > 0 ? times(share, this.way(i)) : [0, 0, 0], true);
+    }
+    const { near, far } = nearTogether(things), bounds = new Bounds(), sensors = far.filter(({ isSensor }) => isSensor).length;
+    for (const { place, radius } of near) bounds.add(place, radius);
+    return { bounds, far: { objects: far.length - sensors, sensors } };
+  }
+  /** How far a way leads out of the scene. */
+  reach(number) {
+    return this.extent(number).bounds.diagonal || 1;
   }
   /** The object that is the query's sensor: ignored, and where it starts. Its place in the scene, or undefined. */
   ownObject(query) {
@@ -155,15 +189,51 @@ class Data {
       objects.linear.subarray(9 * i, 9 * i + 9).every((value, k) => value === sensors.linear[9 * query + k]);
     return (this.queries.ignored[query] ?? []).map((object) => objects.place.get(object)).find(isSame);
   }
-  nameOf(query, object) {
-    const { names } = this.scenes[this.queries.scene[query]];
-    return names[object] ? `${object} (${names[object]})` : `${object}`;
+  /** An object's own name, or none. */
+  nameOf(scene, object) {
+    return this.scenes[scene].names[object] ?? "";
+  }
+  /** "object 3 (lid)": its own name, or that of its mesh. */
+  called(scene, object) {
+    const { objects } = this.scene(scene), place = objects.place.get(object);
+    const name = this.nameOf(scene, object) || (place === undefined ? "" : objects.meshOf(place).name);
+    return `object ${object}${name ? ` (${name})` : ""}`;
   }
   status(query) {
     return this.statuses[this.answers.status[query]];
   }
-  /** The part of its way that a sensor can go, 0 to 1; of a free way, no more than leads out of the scene. */
+  /** Its status; "part" if it is clear of all but what was left out. */
+  kind(query) {
+    const status = this.status(query);
+    return status === "clear" && this.left[query] ? "part" : status;
+  }
+  /** Whether only that is known. */
+  saysOnlyWhether(query) {
+    return this.queries.any[query] === 1 && this.status(query) === "hit";
+  }
+  /** When it touches something; NaN if it is not known. */
+  time(query) {
+    const t = this.answers.t[query];
+    return Number.isFinite(t) && !this.saysOnlyWhether(query) && this.status(query) !== "undecided" ? t : NaN;
+  }
+  /** The latest of these times. */
+  get latest() {
+    this.latestTime ??= this.answers.t.reduce((latest, _, query) => Math.max(latest, this.time(query) || 0), 0);
+    return this.latestTime;
+  }
+  /** The distance of the surfaces then; NaN if it is not known. */
+  gap(query) {
+    return this.queries.clearance[query] > 0 && !this.saysOnlyWhether(query) ? this.answers.gap?.[query] ?? NaN : 0;
+  }
+  vector(name, query) {
+    return [...this.answers[name].subarray(3 * query, 3 * query + 3)];
+  }
+  /**
+   * The part of its way that a sensor can go, 0 to 1; of a free way, no more than leads out of the scene. 0 where it is
+   * not known.
+   */
   share(query) {
+    if (this.saysOnlyWhether(query)) return 0;
     switch (this.status(query)) {
       case "hit": return this.fractionOf(query, this.answers.t[query]);
       case "undecided": return this.fractionOf(query, this.answers.lo[query]);

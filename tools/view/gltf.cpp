@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <map>
-#include <set>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <tuple>
@@ -35,7 +35,8 @@ bool isSheared(const Transform& pose) {
 
 class Writer {
  public:
-  Writer(const Workload& workload, std::span<const Result> answers) : workload_(workload), answers_(answers) {
+  Writer(const Workload& workload, std::span<const Result> answers, const LeftOut& left)
+      : workload_(workload), answers_(answers), left_(left), cut_(workload, answers, left, workload.queries.size()) {
     model_.asset.version = "2.0";
     model_.asset.generator = "cyber-radar";
     model_.buffers.resize(1);
@@ -45,22 +46,27 @@ class Writer {
     addMaterial("overlap", {0.85, 0.13, 0.5});
     addMaterial("undecided", {0.85, 0.65, 0});
     addMaterial("invalid", {0.35, 0.35, 0.35});
+    addMaterial("clear, some left out", {0.85, 0.13, 0.5});
   }
 
-  std::string text() {
-    std::set<uint32_t> scenes;
-    for (const QuerySpec& query : workload_.queries) scenes.insert(query.scene);
+  Gltf file() {
+    const std::span<const QuerySpec> queries = std::span(workload_.queries).first(cut_.queries());
+    std::map<uint32_t, std::vector<size_t>> scenes;  // with their queries
+    for (size_t i = 0; i < queries.size(); ++i) scenes[queries[i].scene].push_back(i);
     if (scenes.empty()) {
-      for (uint32_t scene = 0; scene < workload_.scenes.size(); ++scene) scenes.insert(scene);
+      for (uint32_t scene = 0; scene < workload_.scenes.size(); ++scene) scenes[scene];
     }
-    for (const uint32_t scene : scenes) addScene(scene);
+    for (const auto& [scene, shown] : scenes) addScene(scene, shown);
     model_.defaultScene = 0;
+    tinygltf::Value::Array notes;
+    for (const std::string& note : cut_.notes()) notes.emplace_back(note);
+    if (!notes.empty()) model_.asset.extras = tinygltf::Value({{"notes", tinygltf::Value(notes)}});
     std::ostringstream stream;
     tinygltf::TinyGLTF writer;
     if (!writer.WriteGltfSceneToStream(&model_, stream, false, true)) {
       throw std::runtime_error("glTF: expected a model that can be written");
     }
-    return stream.str();
+    return {stream.str(), cut_.notes()};
   }
 
  private:
@@ -191,7 +197,16 @@ class Writer {
     return number;
   }
 
-  void addScene(uint32_t number) {
+  /// Numbers of a scene's objects, its base's included, as far as there is room.
+  std::vector<uint32_t> objectsOf(uint32_t scene) {
+    std::vector<uint32_t> numbers;
+    if (const std::optional<uint32_t> base = workload_.scenes[scene].base) numbers = cut_.objects(*base, 0);
+    const auto first = static_cast<uint32_t>(workload_.baseOf(scene).size());
+    for (const uint32_t i : cut_.objects(scene, first)) numbers.push_back(first + i);
+    return numbers;
+  }
+
+  void addScene(uint32_t number, std::span<const size_t> queries) {
     tinygltf::Animation animation;
     animation.name = "motion";
     tinygltf::Node root;
@@ -199,18 +214,15 @@ class Writer {
     root.rotation = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
     const std::vector<std::string> names = workload_.objectNames(number);
     std::map<uint32_t, Vec3> motions(workload_.scenes[number].motions.begin(), workload_.scenes[number].motions.end());
-    for (uint32_t i = 0; i < workload_.objectCount(number); ++i) {
+    for (const uint32_t i : objectsOf(number)) {
       const Instance& instance = workload_.instance(number, i);
-      if (instance.mesh == kNone) continue;
       std::string name = "object " + std::to_string(i);
       if (!names.empty() && !names[i].empty()) name += " " + names[i];
       int node = addPlaced(name, number, instance, 0);
       if (motions.contains(i)) node = addMoving(name + " moves", node, motions[i], 1, animation);
       root.children.push_back(node);
     }
-    for (size_t i = 0; i < workload_.queries.size(); ++i) {
-      if (workload_.queries[i].scene == number) root.children.push_back(addSensor(i, animation));
-    }
+    for (const size_t i : queries) root.children.push_back(addSensor(i, animation));
     tinygltf::Scene scene;
     scene.name = workload_.scenes[number].id;
     scene.nodes = {addNode(std::move(root))};
@@ -222,10 +234,12 @@ class Writer {
     const QuerySpec& query = workload_.queries[i];
     const Result& answer = answers_[i];
     const Course course(query);
-    const auto status = static_cast<size_t>(answer.status);
-    const int body = addPlaced(query.id, query.scene, query.sensor(), 1 + status);
+    const auto left = left_.find(static_cast<uint32_t>(i));
+    const bool isPart = answer.status == Status::clear && left != left_.end();
+    const size_t material = isPart ? model_.materials.size() - 1 : 1 + static_cast<size_t>(answer.status);
+    const int body = addPlaced(query.id, query.scene, query.sensor(), material);
     const int node = addMoving("sensor " + query.id, body, course.way, course.share(answer), animation);
-    tinygltf::Value::Object extras{{"status", tinygltf::Value(model_.materials[1 + status].name)}};
+    tinygltf::Value::Object extras{{"status", tinygltf::Value(model_.materials[material].name)}};
     const auto add = [&](const char* name, double value) {
       if (std::isfinite(value)) extras.insert({name, tinygltf::Value(value)});
     };
@@ -233,12 +247,19 @@ class Writer {
     add("lo", answer.lo);
     add("hi", answer.hi);
     if (answer.object != kNone) extras.insert({"object", tinygltf::Value(static_cast<int>(answer.object))});
+    if (left != left_.end()) {
+      tinygltf::Value::Array objects;
+      for (const uint32_t object : left->second) objects.emplace_back(static_cast<int>(object));
+      extras.insert({"overlapping", tinygltf::Value(objects)});
+    }
     model_.nodes[static_cast<size_t>(node)].extras = tinygltf::Value(extras);
     return node;
   }
 
   const Workload& workload_;
   std::span<const Result> answers_;
+  const LeftOut& left_;
+  Cut cut_;
   tinygltf::Model model_;
   std::map<uint32_t, int> indices_;                               // accessors by mesh
   std::map<std::pair<uint32_t, uint32_t>, int> positions_;        // accessors by deforming scene + 1, or 0, and mesh
@@ -247,8 +268,8 @@ class Writer {
 
 }  // namespace
 
-std::string gltfOf(const Workload& workload, std::span<const Result> answers) {
-  return Writer(workload, answers).text();
+Gltf gltfOf(const Workload& workload, std::span<const Result> answers, const LeftOut& left) {
+  return Writer(workload, answers, left).file();
 }
 
 }  // namespace radar::tools

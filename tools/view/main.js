@@ -10,7 +10,7 @@ class Page {
     this.look = new Look(data);
     Object.assign(this, { canvas, budget: 300000, playing: false, frames: [], flight: null });
     document.querySelector("h1").textContent = document.title = data.title;
-    document.querySelector("#note").textContent = data.notes.join(" ");
+    this.overlay = new Overlay(data, canvas, () => this.whole(true, true));
     this.table = new Table(data, document.querySelector("#table"), {
       choose: (query) => this.choose(query, { fly: true }),
       show: (visible) => this.change({ visible }),
@@ -19,8 +19,15 @@ class Page {
     this.whole(false);
     this.tour = data.tour;
     this.follow(data.tour[0] ?? {});
-    if (data.queries.count === 1) this.choose(0);
+    if (!this.tour.length) this.choose(this.firstToSee());
     requestAnimationFrame(() => this.frame());
+  }
+
+  /** The first hit, or else what comes first; undefined if there is no query. */
+  firstToSee() {
+    const queries = Array.from({ length: this.data.queries.count }, (_, query) => query);
+    const isOf = (...kinds) => queries.find((query) => kinds.includes(this.data.kind(query)));
+    return isOf("hit") ?? isOf("overlap", "part") ?? queries[0];
   }
 
   /** Something to be seen has changed. */
@@ -53,36 +60,43 @@ class Page {
 
   // Where to look
 
-  /** Places to be seen together: their middle and reach. */
-  lookAt(places, smooth = true) {
-    const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
-    for (const [place, radius] of places) {
-      for (let k = 0; k < 3; ++k) {
-        lo[k] = Math.min(lo[k], place[k] - radius);
-        hi[k] = Math.max(hi[k], place[k] + radius);
-      }
-    }
-    if (!(lo[0] <= hi[0])) return;
-    const reach = 0.5 * lengthOf(minus(hi, lo)) || 1;
-    const end = { target: between(lo, hi, 0.5), distance: (1.15 * reach) / Math.sin(Math.atan(this.camera.slope)) };
+  /** A box to be seen. */
+  lookAt(bounds, smooth = true) {
+    if (bounds.isEmpty) return;
+    const end = this.camera.looking(bounds, this.canvas.clientWidth / this.canvas.clientHeight);
     if (!smooth || matchMedia("(prefers-reduced-motion: reduce)").matches) Object.assign(this.camera, end);
     else this.flight = { from: { ...this.camera }, end, begun: performance.now() };
     this.change();
   }
-  whole(smooth = true) {
-    const { data, look } = this, { objects } = data.scene(look.scene), places = [];
-    for (let i = 0; i < objects.count; ++i) places.push([objects.centreOf(i), objects.radius[i]]);
+  /** All that is near together, or `all` that can be drawn. */
+  whole(smooth = true, all = false) {
+    const { data, look } = this, { objects } = data.scene(look.scene), bounds = new Bounds();
+    const near = data.extent(look.scene).bounds, slack = data.reach(look.scene);
+    const add = (place, radius) => {
+      const isNear = place.every((x, k) => x >= near.lo[k] - slack && x <= near.hi[k] + slack);
+      if (isNear || (all && Math.max(...place.map(Math.abs), radius) < LARGEST)) bounds.add(place, radius);
+    };
+    for (let i = 0; i < objects.count; ++i) add(objects.centreOf(i), objects.radius[i]);
     for (let i = 0; i < data.queries.count; ++i) {
       if (data.queries.scene[i] !== look.scene) continue;
       const start = data.sensors.centreOf(i), end = plus(start, times(data.share(i), data.way(i)));
-      for (const place of [start, end]) places.push([place, data.sensors.radius[i]]);
+      for (const place of [start, end]) add(place, data.sensors.radius[i]);
     }
-    this.lookAt(places, smooth);
+    this.lookAt(bounds, smooth);
   }
   flyTo(query) {
     const { data } = this, { sensors } = data, start = sensors.centreOf(query), radius = sensors.radius[query];
-    const shares = [0, data.share(query), data.otherShare(query) ?? 0];
-    this.lookAt(shares.map((share) => [plus(start, times(share, data.way(query))), radius]));
+    const bounds = new Bounds(), { objects } = data.scene(data.queries.scene[query]);
+    for (const share of [0, data.share(query), data.otherShare(query) ?? 0]) {
+      bounds.add(plus(start, times(share, data.way(query))), radius);
+    }
+    // What it meets, or what was left out, if it is not much larger.
+    const most = bounds.diagonal;
+    for (const object of [data.touched(query), ...(data.left[query] ?? [])]) {
+      const i = objects.place.get(object);
+      if (i !== undefined && objects.radius[i] < most) bounds.add(objects.centreOf(i), objects.radius[i]);
+    }
+    this.lookAt(bounds);
   }
   fly(now) {
     const { from, end, begun } = this.flight, share = Math.min((now - begun) / 500, 1), s = share * share * (3 - 2 * share);
@@ -124,6 +138,7 @@ class Page {
     this.look.fill(this.stage);
     this.stage.settle();
     this.stage.drawWith(this.renderer);
+    this.overlay.draw(this.camera, this.look, this.stage.labels);
   }
 
   advance(passed) {
@@ -159,53 +174,17 @@ class Page {
     if (look.object >= 0) {
       const { objects } = data.scene(look.scene), number = objects.number[look.object];
       made(place, "h2", "", `Object ${number}`);
-      const name = data.scenes[look.scene].names[number];
+      const name = data.nameOf(look.scene, number);
       if (name) made(place, "p", "", name);
-      made(place, "p", "", this.sizeInWords("Mesh", objects.meshOf(look.object)));
+      made(place, "p", "", sizeInWords("Mesh", objects.meshOf(look.object)));
       const only = made(place, "button", "", "Show what stops at it");
       only.onclick = () => this.table.filter({ object: `${number}` });
     }
     if (query < 0) return;
-    const status = data.status(query), { queries } = data;
-    const head = made(place, "h2", status, `${SYMBOLS[status]} ${queries.id[query]}`);
-    head.title = status;
-    for (const line of this.words(query)) made(place, "p", "", line);
+    const kind = data.kind(query), head = made(place, "h2", kind, `${SYMBOLS[kind]} ${data.queries.id[query]}`);
+    head.title = kindInWords(kind);
+    for (const line of inWords(data, query)) made(place, "p", "", line);
     if (data.scopes[query]) drawScopes(place, data.scopes[query]);
-  }
-
-  sizeInWords(what, mesh) {
-    const sides = mesh.half.map((half) => inDigits(2 * half, 4)).join(" × ");
-    return `${what} ${mesh.name}: ${mesh.triangles} triangles, ${sides}`;
-  }
-  words(query) {
-    const { data } = this, { answers, queries } = data, t = (value) => inDigits(value, 9);
-    const object = answers.object[query], touches = object === data.none ? "" : `object ${data.nameOf(query, object)}`;
-    const unit = queries.step[query] ? " of the step" : "", lines = [];
-    switch (data.status(query)) {
-      case "hit": lines.push(`Free for ${t(answers.t[query])}${unit}, then it touches ${touches || "something"}.`); break;
-      case "clear": lines.push(`Touches nothing within ${t(queries.whole[query])}${unit}.`); break;
-      case "overlap": lines.push(`Touches ${touches || "something"} where it starts.`); break;
-      case "undecided": lines.push(`Free for ${t(answers.lo[query])}${unit}; contact after that is possible.`); break;
-      default: lines.push("Not answered.");
-    }
-    if (data.reasons[query]) lines.push(data.reasons[query]);
-    const [lo, hi] = [answers.lo[query], answers.hi[query]];
-    if (lo < hi && Number.isFinite(lo)) {
-      const isClose = t(lo) === t(hi);
-      lines.push(isClose ? `The bracket is ${inDigits(hi - lo, 2)} wide.` : `The bracket: ${t(lo)} to ${t(hi)}.`);
-    }
-    if (answers.triA[query] !== data.none) {
-      lines.push(`Its triangle ${answers.triA[query]} meets the object's triangle ${answers.triB[query]} (yellow).`);
-    }
-    const numbers = (name) => [...answers[name].subarray(3 * query, 3 * query + 3)];
-    for (const name of ["point", "normal"]) {
-      if (numbers(name).every(Number.isFinite)) lines.push(`${name} ${numbers(name).map((x) => inDigits(x)).join(", ")}`);
-    }
-    if (data.others[query]) lines.push(data.others[query].words);
-    lines.push(this.sizeInWords("Sensor", data.sensors.meshOf(query)));
-    const ignored = queries.ignored[query];
-    if (ignored) lines.push(`Takes no account of ${ignored.length > 9 ? `${ignored.length} objects` : `object ${ignored.join(", ")}`} (like glass).`);
-    return lines;
   }
 
   // Hands on

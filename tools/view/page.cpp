@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
-#include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "view/course.h"
+#include "view/cut.h"
 #include "view/page_text.h"
 #include "workloads/shapes.h"
 
@@ -17,9 +16,6 @@ namespace radar::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr uint32_t kMostObjects = 100'000, kMostTriangles = 3'000'000;
-// Vertices need 12 bytes, so that a page of this many is about 50 MB.
 
 std::string base64(std::string_view bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -62,80 +58,6 @@ struct Poses {
     }
   }
   Json json() const { return {{"mesh", array(mesh)}, {"linear", array(linear)}, {"at", array(at)}}; }
-};
-
-/// Chooses what a page can hold, and says what it leaves out.
-class Cut {
- public:
-  /// `all`: how many queries there are.
-  Cut(const Workload& workload, std::span<const Result> answers, uint64_t all) : workload_(workload) {
-    queries_ = std::min<size_t>(workload.queries.size(), kMostShownQueries);
-    if (queries_ < all) {
-      note("The first " + std::to_string(queries_) + " of " + std::to_string(all) + " queries.");
-    }
-    for (size_t i = 0; i < queries_; ++i) {
-      const uint32_t scene = workload.queries[i].scene;
-      for (const uint32_t part : {scene, workload.scenes[scene].base.value_or(scene)}) {
-        scenes_.insert(part);
-        if (answers[i].object != kNone) touched_[part].insert(answers[i].object);
-      }
-    }
-    cutMeshes();
-  }
-
-  size_t queries() const { return queries_; }
-  bool isBoxed(size_t mesh) const { return boxed_.contains(mesh); }
-  const std::vector<std::string>& notes() const { return notes_; }
-  /// A scene that neither a query nor such a scene needs is left out.
-  bool hasScene(uint32_t scene) const { return workload_.queries.empty() || scenes_.contains(scene); }
-  /// Numbers among the scene's own instances, of which the first has the number `first`.
-  std::vector<uint32_t> objects(uint32_t scene, uint32_t first) {
-    const std::vector<Instance>& instances = workload_.scenes[scene].instances;
-    const size_t room = kMostObjects - std::min(kMostObjects, first);
-    std::vector<uint32_t> kept;
-    const std::set<uint32_t>& touched = touched_[scene];
-    const auto from = touched.lower_bound(first), to = touched.lower_bound(first + uint32_t(instances.size()));
-    size_t others = room - std::min<size_t>(room, static_cast<size_t>(std::distance(from, to)));
-    for (uint32_t i = 0; i < instances.size(); ++i) {
-      if (instances[i].mesh == kNone) continue;
-      const bool isTouched = touched.contains(first + i);
-      if (isTouched || others > 0) kept.push_back(i);
-      others -= !isTouched && others > 0;
-    }
-    if (instances.size() > room) {
-      note("Scene " + workload_.scenes[scene].id + ": " + std::to_string(kept.size()) + " of " +
-           std::to_string(instances.size()) + " objects, with all that are touched.");
-    }
-    return kept;
-  }
-
- private:
-  void note(const std::string& sentence) { notes_.push_back(sentence); }
-  // The largest meshes become boxes until the others fit.
-  void cutMeshes() {
-    std::vector<size_t> largest(workload_.meshes.size());
-    std::iota(largest.begin(), largest.end(), size_t{0});
-    const auto triangles = [&](size_t mesh) { return workload_.meshes[mesh].triangleCount(); };
-    std::ranges::stable_sort(largest, std::greater<>(), triangles);
-    uint64_t sum = 0;
-    for (size_t mesh : largest) sum += triangles(mesh);
-    for (size_t i = 0; sum > kMostTriangles; ++i) {
-      sum -= triangles(largest[i]);
-      boxed_.insert(largest[i]);
-    }
-    if (!boxed_.empty()) {
-      const size_t count = boxed_.size();
-      note(count == 1 ? "The largest mesh is shown as its box."
-                      : "The largest " + std::to_string(count) + " meshes are shown as their boxes.");
-    }
-  }
-
-  const Workload& workload_;
-  size_t queries_ = 0;
-  std::set<uint32_t> scenes_;
-  std::map<uint32_t, std::set<uint32_t>> touched_;
-  std::set<size_t> boxed_;
-  std::vector<std::string> notes_;
 };
 
 Json meshJson(const MeshData& mesh, const MeshData* box) {
@@ -214,8 +136,8 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   Json ignored = Json::object();
   Json ids = Json::array();
   std::vector<uint32_t> scenes;
-  std::vector<double> ways, wholes;
-  std::vector<uint8_t> steps;
+  std::vector<double> ways, wholes, clearances;
+  std::vector<uint8_t> steps, any;
   for (const QuerySpec& query : queries) {
     const Course course(query);
     poses.add(query.mesh, query.worldFromMesh);
@@ -224,6 +146,8 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
     ways.insert(ways.end(), course.way.begin(), course.way.end());
     wholes.push_back(course.whole);
     steps.push_back(query.motion.has_value());
+    any.push_back(query.anyHit);
+    clearances.push_back(query.clearance);
     const std::vector<uint32_t> left = ignoredBy(query, workload.scenes[query.scene]);
     if (!left.empty()) ignored[std::to_string(scenes.size() - 1)] = left;
   }
@@ -234,6 +158,8 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   json["way"] = array(ways);
   json["whole"] = array(wholes);
   json["step"] = array(steps);
+  json["any"] = array(any);
+  json["clearance"] = array(clearances);
   json["ignored"] = std::move(ignored);
   return json;
 }
@@ -241,7 +167,11 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
 Json answersJson(std::span<const Result> answers) {
   std::vector<uint8_t> status;
   std::vector<uint32_t> object, triA, triB;
-  std::vector<double> t, lo, hi, point, normal;
+  std::vector<double> t, lo, hi, point, normal, gap;
+  const auto gapOf = [](const auto& answer) {
+    if constexpr (requires { answer.gap; }) return answer.gap;
+    return double{NAN};
+  };
   for (const Result& answer : answers) {
     status.push_back(static_cast<uint8_t>(answer.status));
     t.push_back(answer.t);
@@ -252,10 +182,11 @@ Json answersJson(std::span<const Result> answers) {
     triB.push_back(answer.triB);
     point.insert(point.end(), answer.point.begin(), answer.point.end());
     normal.insert(normal.end(), answer.normal.begin(), answer.normal.end());
+    gap.push_back(gapOf(answer));
   }
-  return {{"status", array(status)}, {"t", array(t)},           {"lo", array(lo)},
-          {"hi", array(hi)},         {"object", array(object)}, {"triA", array(triA)},
-          {"triB", array(triB)},     {"point", array(point)},   {"normal", array(normal)}};
+  return {{"status", array(status)}, {"t", array(t)},       {"lo", array(lo)},     {"hi", array(hi)},
+          {"object", array(object)}, {"triA", array(triA)}, {"triB", array(triB)}, {"point", array(point)},
+          {"normal", array(normal)}, {"gap", array(gap)}};
 }
 
 Json scopesJson(const Scopes& scopes) {
@@ -282,7 +213,8 @@ Json byQuery(const std::map<uint32_t, Value>& entries, size_t queries, const Mak
 }  // namespace
 
 std::string pageOf(const Workload& workload, std::span<const Result> answers, const PageContent& content) {
-  Cut cut(workload, answers, std::max<uint64_t>(content.queries, workload.queries.size()));
+  Cut cut(workload, answers, content.left, std::max<uint64_t>(content.queries, workload.queries.size()));
+  cut.boxMeshes();
   const size_t count = cut.queries();
   const auto asItIs = [](const std::string& text) { return text; };
   Json json;
@@ -302,6 +234,7 @@ std::string pageOf(const Workload& workload, std::span<const Result> answers, co
   for (uint32_t i = 0; i < workload.scenes.size(); ++i) json["scenes"].push_back(sceneJson(workload, i, cut));
   json["queries"] = queriesJson(workload, std::span(workload.queries).first(count));
   json["answers"] = answersJson(answers.first(count));
+  json["left"] = byQuery(content.left, count, [](const std::vector<uint32_t>& objects) { return objects; });
   json["reasons"] = byQuery(content.reasons, count, asItIs);
   json["others"] = byQuery(content.others, count, otherJson);
   json["scopes"] = byQuery(content.scopes, count, scopesJson);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "workloads/workload.h"
+#include "view/cut.h"
 
 namespace radar::tools {
 
@@ -22,14 +22,12 @@ struct PageContent {
   std::string title;
   uint64_t queries = 0;                     ///< how many there are, if the workload has only the first of them
   std::map<uint32_t, std::string> reasons;  ///< by query: why it is invalid
-  std::map<uint32_t, OtherAnswer> others;   ///< by query
-  std::map<uint32_t, Scopes> scopes;        ///< by query
+  LeftOut left;
+  std::map<uint32_t, OtherAnswer> others;  ///< by query
+  std::map<uint32_t, Scopes> scopes;       ///< by query
   /// What plays when the page is opened: a query, from its start to its contact, and then all at once.
   std::optional<uint32_t> tour;
 };
-
-/// No page has more; the first are shown.
-inline constexpr uint32_t kMostShownQueries = 10'000;
 
 /// The page, HTML. An answer for each query of the workload; an instance without a mesh (kNone) is left out, under the
 /// numbers of the others. A scene of more than 100,000 objects, more than 10,000 queries and meshes of more than three

@@ -261,6 +261,8 @@ class Renderer {
   segments(rows) {
     const { gl, canvas } = this;
     if (rows.count === 0 || this.picking) return;
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     this.use(this.segment, { size: [canvas.width, canvas.height], near: [this.view.near] });
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
     this.attributes(this.segment, 2, { corner: [0, "float", 2] }, 0, 0);
@@ -268,6 +270,7 @@ class Renderer {
     const layout = { from: [0, "float", 3], to: [3, "float", 3], colour: [6, "colour"], style: [7, "float", 2] };
     this.attributes(this.segment, SEGMENT_WORDS, layout, 0, 1);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, rows.count);
+    gl.disable(gl.BLEND);
   }
 
   points(rows) {

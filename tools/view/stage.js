@@ -3,10 +3,11 @@
 const COLOURS = {
   hit: [0.9, 0.42, 0.05], clear: [0.1, 0.6, 0.47], overlap: [0.85, 0.13, 0.5], undecided: [0.85, 0.65, 0],
   invalid: [0.35, 0.35, 0.35], object: [0.68, 0.72, 0.78], touched: [0.32, 0.55, 0.86], triangle: [1, 0.9, 0.1],
-  normal: [0.05, 0.2, 0.75], path: [0.15, 0.15, 0.2],
+  normal: [0.05, 0.2, 0.75], gap: [0.75, 0.1, 0.1], path: [0.15, 0.15, 0.2],
 };
-const SYMBOLS = { hit: "●", clear: "○", overlap: "✕", undecided: "◆", invalid: "–" };
-const MARKS = { hit: "disc", clear: "ring", overlap: "cross", undecided: "diamond", invalid: "square" };
+COLOURS.part = COLOURS.overlap;
+const SYMBOLS = { hit: "●", clear: "○", part: "○", overlap: "✕", undecided: "◆", invalid: "–" };
+const MARKS = { hit: "disc", clear: "ring", part: "ring", overlap: "cross", undecided: "diamond", invalid: "square" };
 
 // The viridis map (S. van der Walt and N. Smith, 2015), as a polynomial (M. Zucker).
 const VIRIDIS = [
@@ -48,7 +49,7 @@ class Stage {
   begin(budget) {
     const { camera, canvas } = this;
     Object.assign(this, { budget, items: [], solids: new Map(), ghosts: new Map(), farthest: 0 });
-    Object.assign(this, { lines: new Rows(SEGMENT_WORDS), marks: new Rows(POINT_WORDS), specks: new Rows(POINT_WORDS) });
+    Object.assign(this, { labels: [], lines: new Rows(SEGMENT_WORDS), marks: new Rows(POINT_WORDS), specks: new Rows(POINT_WORDS) });
     [this.right, this.up, this.forward] = camera.axes();
     this.eye = camera.eye();
     this.focal = canvas.height / (2 * camera.slope);
@@ -63,7 +64,7 @@ class Stage {
     const x = centre[3 * i] + moved[0] - eye[0], y = centre[3 * i + 1] + moved[1] - eye[1];
     const z = centre[3 * i + 2] + moved[2] - eye[2];
     const depth = x * forward[0] + y * forward[1] + z * forward[2], radius = placed.radius[i];
-    if (depth < -radius) return;
+    if (!(depth >= -radius && Math.max(Math.abs(x), Math.abs(y), Math.abs(z), radius) < LARGEST)) return;
     const side = this.widest * radius, most = Math.max(depth, 0) * this.camera.slope;
     if (Math.abs(x * up[0] + y * up[1] + z * up[2]) > most + side) return;
     if (Math.abs(x * right[0] + y * right[1] + z * right[2]) > most * this.aspect + side) return;
@@ -76,10 +77,11 @@ class Stage {
   hides(placed, i, moved, place) {
     const { eye } = this, { centre } = placed, [u, v, w] = [place[0] - eye[0], place[1] - eye[1], place[2] - eye[2]];
     const x = centre[3 * i] + moved[0] - eye[0], y = centre[3 * i + 1] + moved[1] - eye[1];
-    const z = centre[3 * i + 2] + moved[2] - eye[2], far = u * u + v * v + w * w, share = (x * u + y * v + z * w) / far;
-    if (share < 0 || share > 1) return false;
-    const off = (x - share * u) ** 2 + (y - share * v) ** 2 + (z - share * w) ** 2, radius = placed.radius[i];
-    return off < radius ** 2 && share * Math.sqrt(far) > radius;
+    const z = centre[3 * i + 2] + moved[2] - eye[2], far = u * u + v * v + w * w;
+    const share = Math.min(Math.max((x * u + y * v + z * w) / far, 0), 1), radius = placed.radius[i];
+    if (!((x - share * u) ** 2 + (y - share * v) ** 2 + (z - share * w) ** 2 < radius ** 2)) return false;
+    if (placed.meshOf(i).drawn > 50000) return share < 1 && share * Math.sqrt(far) > radius;
+    return placed.crosses(i, minus(eye, moved), minus(place, moved));
   }
 
   /** The largest in sight whole, others as their boxes, the smallest as specks, some of which are left out. */
@@ -134,6 +136,23 @@ class Stage {
     floats[word + 6] = SHAPES.square;
   }
 
+  /** An item like glass, with its edges if `lines`. */
+  glass(placed, i, moved, colour, lines) {
+    const mesh = placed.meshOf(i);
+    if (!(placed.radius[i] < LARGEST)) return;
+    this.put(this.ghosts, mesh, { placed, i, moved, colour, id: 0 });
+    if (!lines || mesh.drawn > 20000) return;
+    for (const ends of mesh.creases()) {
+      const [a, b] = ends.map((end) => plus(placed.toWorld(i, end), moved));
+      this.line(a, b, [...colour, 0.8], 1);
+    }
+  }
+
+  /** Words beside a place. */
+  label(place, text) {
+    this.labels.push({ place, text });
+  }
+
   triangle(corners, colour) {
     const [a, b] = [minus(corners[1], corners[0]), minus(corners[2], corners[0])];
     const linear = [0, 1, 2].flatMap((k) => [a[k], b[k], 0]);
@@ -165,8 +184,8 @@ class Stage {
 
   view() {
     const { camera, canvas } = this, farthest = Math.max(this.farthest, 1.5 * camera.distance);
-    const near = Math.max(1e-3 * camera.distance, 1e-5 * farthest);
-    return { clipFromEye: camera.clipFromEye(canvas.width / canvas.height, farthest), near, up: this.up };
+    const near = camera.nearest(farthest);
+    return { clipFromEye: camera.clipFromEye(canvas.width / canvas.height, near, farthest), near, up: this.up };
   }
 
   drawWith(renderer, picking = false) {
@@ -176,137 +195,5 @@ class Stage {
     if (!picking) renderer.surfaces(this.ghosts, "ghost");
     renderer.segments(this.lines);
     if (!picking) renderer.points(this.marks);
-  }
-}
-
-/** A way of looking at the answers: which queries, how far along their ways, and what is chosen. */
-class Look {
-  constructor(data) {
-    const scene = data.queries.count ? data.queries.scene[0] : 0;
-    Object.assign(this, { data, scene, chosen: -1, object: -1, visible: [], time: 1, alone: false, by: "status" });
-  }
-
-  /** The part of its way that a query's sensor has gone. */
-  gone(query) {
-    const share = this.data.share(query);
-    return this.alone && query === this.chosen ? this.time * share : Math.min(this.time, share);
-  }
-  /** The part of the step that has passed, for objects. */
-  passed() {
-    return this.chosen >= 0 && this.alone ? this.gone(this.chosen) : this.time;
-  }
-
-  colourOf(query) {
-    const { data, by } = this, { object, t } = data.answers;
-    if (by === "t") return Number.isFinite(t[query]) ? viridis(t[query] / (this.farthest() || 1)) : COLOURS.invalid;
-    if (by === "object") {
-      const own = data.ownObject(query), number = own === undefined ? object[query] : data.scene(this.scene).objects.number[own];
-      return number === data.none ? COLOURS.invalid : hashed(number);
-    }
-    return COLOURS[data.status(query)];
-  }
-  farthest() {
-    return Math.max(0, ...this.data.answers.t.filter(Number.isFinite));
-  }
-
-  /** The place that nothing is to hide: where the chosen sensor stops. */
-  seen() {
-    const { data, chosen } = this, point = [...data.answers.point.subarray(3 * chosen, 3 * chosen + 3)];
-    if (chosen < 0) return null;
-    return point.every(Number.isFinite) ? point : plus(data.sensors.centreOf(chosen), times(data.share(chosen), data.way(chosen)));
-  }
-
-  /** Puts everything on a stage. */
-  fill(stage) {
-    const { data, chosen } = this, { sensors } = data, scene = data.scene(this.scene);
-    const { objects, ways } = scene, rest = [0, 0, 0], isMoving = ways.size > 0, passed = this.passed();
-    const touched = chosen >= 0 ? objects.place.get(data.touched(chosen)) : undefined;
-    const ignored = new Set(data.queries.ignored[chosen]), seen = this.seen(stage);
-    const shown = this.visible.filter((query) => data.queries.scene[query] === this.scene);
-    const drawn = this.alone && chosen >= 0 ? [chosen] : shown, moves = new Set(drawn.map((query) => data.ownObject(query)));
-    for (let i = 0; i < objects.count; ++i) {
-      if (moves.has(i)) continue;
-      let colour = this.by === "object" ? hashed(objects.number[i]) : COLOURS.object;
-      if (i === touched || i === this.object) colour = COLOURS.touched;
-      const moved = isMoving && ways.has(i) ? times(passed, ways.get(i)) : rest;
-      const isGlass = (ignored.size > 0 && ignored.has(objects.number[i])) || (i !== touched && seen && stage.hides(objects, i, moved, seen));
-      if (isGlass) stage.put(stage.ghosts, objects.meshOf(i), { placed: objects, i, moved, colour, id: 0 });
-      else stage.add(objects, i, moved, colour, 1 + i);
-      if (i === touched && objects.radius[i] < 0.02 * stage.camera.distance) {
-        stage.mark(plus(objects.centreOf(i), moved), COLOURS.touched, 22, "ring");
-      }
-    }
-    for (const query of drawn) {
-      const colour = this.colourOf(query), way = data.way(query), pale = chosen >= 0 && query !== chosen;
-      if (query === chosen) this.explain(stage, scene);
-      if (data.status(query) !== "invalid") {
-        const tint = pale ? between(colour, [0.9, 0.9, 0.92], 0.55) : colour;
-        stage.add(sensors, query, times(this.gone(query), way), tint, 1 + objects.count + query);
-      }
-      if (shown.length > 2000 && query !== chosen) continue;
-      const start = sensors.centreOf(query), end = plus(start, times(data.share(query), way));
-      const status = data.status(query), line = pale ? [...colour, 0.5] : colour;
-      stage.line(start, end, line, query === chosen ? 3 : 1.5, status === "clear" ? 6 : status === "undecided" ? 2 : 0);
-      stage.mark(end, line, query === chosen ? 11 : 7, MARKS[status]);
-    }
-  }
-
-  /** The chosen query: where its sensor starts, its bracket, what it touches. */
-  explain(stage, { objects, ways }) {
-    const { data, chosen } = this, { sensors, answers } = data, way = data.way(chosen);
-    const colour = COLOURS[data.status(chosen)], mesh = sensors.meshOf(chosen), start = sensors.centreOf(chosen);
-    stage.put(stage.ghosts, mesh, { placed: sensors, i: chosen, moved: [0, 0, 0], colour, id: 0 });
-    if (mesh.drawn <= 20000) {
-      for (const [a, b] of mesh.creases()) {
-        stage.line(sensors.toWorld(chosen, a), sensors.toWorld(chosen, b), [...colour, 0.8], 1);
-      }
-    }
-    const at = (share) => plus(start, times(share, way)), share = data.share(chosen);
-    const beyond = Math.min(1, Math.max(share, data.reach(this.scene) / (lengthOf(way) || 1)));
-    stage.line(at(share), at(beyond), [...COLOURS.path, 0.5], 1.5, 4);
-    const across = times(0.25 * sensors.radius[chosen], unit(cross(way, stage.forward)));
-    for (const t of [answers.lo[chosen], answers.hi[chosen]]) {
-      if (!Number.isFinite(t)) continue;
-      const tick = at(data.fractionOf(chosen, t));
-      stage.line(minus(tick, across), plus(tick, across), COLOURS.path, 2);
-    }
-    this.explainContact(stage, objects, ways, share);
-    const other = data.otherShare(chosen);
-    if (other !== null && Math.abs(other - share) > 1e-3) {
-      const moved = times(other, way);
-      stage.put(stage.ghosts, mesh, { placed: sensors, i: chosen, moved, colour: COLOURS.path, id: 0 });
-      stage.mark(at(other), COLOURS.path, 13, "ring");
-    }
-    const scopes = data.scopes[chosen];
-    if (scopes) {
-      for (const [a, b] of frameOf(scopes)) stage.line(a, b, COLOURS.normal, 1.5);
-    }
-  }
-
-  explainContact(stage, objects, ways, share) {
-    const { data, chosen } = this, { sensors, answers } = data, way = data.way(chosen);
-    const object = objects.place.get(answers.object[chosen]);
-    if (object === undefined) return;
-    const place = (placed, i, triangle, moved) =>
-      placed.meshOf(i).corners(triangle).map((corner) => plus(placed.toWorld(i, corner), moved));
-    const moved = ways.has(object) ? times(share, ways.get(object)) : [0, 0, 0];
-    // A mesh of which the page has only the box has other triangles.
-    const has = (placed, i, triangle) => triangle !== data.none && !placed.meshOf(i).isBox;
-    const triangles = [], [a, b] = [answers.triA[chosen], answers.triB[chosen]];
-    if (has(sensors, chosen, a)) triangles.push(place(sensors, chosen, a, times(share, way)));
-    if (has(objects, object, b)) triangles.push(place(objects, object, b, moved));
-    for (const corners of triangles) {
-      stage.triangle(corners, COLOURS.triangle);
-      for (let k = 0; k < 3; ++k) stage.line(corners[k], corners[(k + 1) % 3], COLOURS.path, 2);
-    }
-    const point = [...answers.point.subarray(3 * chosen, 3 * chosen + 3)];
-    const normal = [...answers.normal.subarray(3 * chosen, 3 * chosen + 3)];
-    if (!point.every(Number.isFinite)) return;
-    if (normal.every(Number.isFinite)) {
-      const tip = plus(point, times(0.8 * sensors.radius[chosen], normal));
-      stage.line(point, tip, COLOURS.normal, 3);
-      stage.mark(tip, COLOURS.normal, 8, "diamond");
-    }
-    stage.mark(point, [0, 0, 0], 9, "disc");
   }
 }

@@ -1,11 +1,13 @@
 // The list of queries: sorted, filtered, and drawn only where it is scrolled to.
 
 const ROW_HEIGHT = 24;
+/** Of its bracket; NaN if it says nothing. */
+const widthOf = (data, i) => (data.saysOnlyWhether(i) ? NaN : data.answers.hi[i] - data.answers.lo[i]);
 const COLUMNS = [
   { name: "status", value: (data, i) => data.answers.status[i] },
   { name: "query", value: (data, i) => data.queries.id[i] },
-  { name: "t", value: (data, i) => data.answers.t[i] },
-  { name: "hi − lo", value: (data, i) => data.answers.hi[i] - data.answers.lo[i] },
+  { name: "t", value: (data, i) => (data.saysOnlyWhether(i) ? data.answers.hi : data.answers.t)[i] },
+  { name: "hi − lo", value: (data, i) => widthOf(data, i) },
   { name: "object", value: (data, i) => data.answers.object[i] },
 ];
 
@@ -17,23 +19,21 @@ function made(parent, tag, className = "", text = "") {
   return element;
 }
 
-const inDigits = (value, digits = 6) =>
-  Number.isNaN(value) ? "" : value === Infinity ? "∞" : `${Number(value.toPrecision(digits))}`;
-
 class Table {
   /** Calls `choose` with a query's number; `show` with the numbers that the filters leave. */
   constructor(data, place, { choose, show }) {
     Object.assign(this, { data, choose, show, column: null, descending: false, statuses: new Set(), rows: [] });
     this.order = Uint32Array.from({ length: data.queries.count }, (_, i) => i);
     this.makeFilters(made(place, "div", "filters"));
-    const heads = made(place, "div", "row heads");
+    this.scroller = made(place, "div", "scroller");
+    this.scroller.tabIndex = 0;
+    // Within what scrolls, so that a scrollbar moves them as it moves the columns.
+    const heads = made(this.scroller, "div", "row heads");
     for (const column of COLUMNS) {
       const head = made(heads, "button", "", column.name);
       head.title = `Sort by ${column.name}`;
       head.onclick = () => this.sort(column);
     }
-    this.scroller = made(place, "div", "scroller");
-    this.scroller.tabIndex = 0;
     this.room = made(this.scroller, "div", "room");
     this.scroller.onscroll = () => this.draw();
     new ResizeObserver(() => this.draw()).observe(this.scroller);
@@ -42,9 +42,9 @@ class Table {
 
   makeFilters(place) {
     const { data } = this, counts = new Map();
-    for (let i = 0; i < data.queries.count; ++i) counts.set(data.status(i), (counts.get(data.status(i)) ?? 0) + 1);
+    for (let i = 0; i < data.queries.count; ++i) counts.set(data.kind(i), (counts.get(data.kind(i)) ?? 0) + 1);
     for (const [status, count] of counts) {
-      const button = made(place, "button", `chip ${status}`, `${SYMBOLS[status]} ${status} ${count}`);
+      const button = made(place, "button", `chip ${status}`, `${SYMBOLS[status]} ${kindInWords(status)} ${count}`);
       button.onclick = () => {
         if (!this.statuses.delete(status)) this.statuses.add(status);
         button.classList.toggle("on", this.statuses.has(status));
@@ -63,13 +63,13 @@ class Table {
 
   /** Applies the filters, or those that are given: {statuses, id, object}. */
   filter(given = {}) {
-    const { data } = this, { status, object } = data.answers;
+    const { data } = this, { object } = data.answers;
     if (given.statuses) this.statuses = new Set(given.statuses);
     if (given.id !== undefined) this.id.value = given.id;
     if (given.object !== undefined) this.object.value = given.object;
     const id = this.id.value.toLowerCase(), number = this.object.value.trim();
     this.rows = this.order.filter((i) =>
-      (this.statuses.size === 0 || this.statuses.has(data.statuses[status[i]])) &&
+      (this.statuses.size === 0 || this.statuses.has(data.kind(i))) &&
       (id === "" || data.queries.id[i].toLowerCase().includes(id)) &&
       (number === "" || `${object[i]}` === number));
     this.show([...this.rows]);
@@ -89,7 +89,7 @@ class Table {
   mark(query) {
     this.chosen = query;
     const row = this.rows.indexOf(query), top = row * ROW_HEIGHT, { scrollTop, clientHeight } = this.scroller;
-    if (row >= 0 && (top < scrollTop || top + ROW_HEIGHT > scrollTop + clientHeight)) {
+    if (row >= 0 && (top < scrollTop || top + 2 * ROW_HEIGHT > scrollTop + clientHeight)) {
       this.scroller.scrollTop = top - 0.4 * clientHeight;
     }
     this.draw();
@@ -108,15 +108,15 @@ class Table {
     const first = Math.max(0, Math.floor(scroller.scrollTop / ROW_HEIGHT) - 4);
     const end = Math.min(this.rows.length, first + Math.ceil(scroller.clientHeight / ROW_HEIGHT) + 8);
     for (let place = first; place < end; ++place) {
-      const i = this.rows[place], status = data.status(i);
+      const i = this.rows[place], kind = data.kind(i), object = answers.object[i];
       const row = made(room, "div", `row ${i === this.chosen ? "chosen" : ""}`);
       row.style.top = `${place * ROW_HEIGHT}px`;
       row.onclick = () => this.choose(i);
-      made(row, "span", status, `${SYMBOLS[status]} ${status}`);
-      made(row, "span", "", queries.id[i]);
-      made(row, "span", "number", inDigits(answers.t[i]));
-      made(row, "span", "number", inDigits(answers.hi[i] - answers.lo[i], 2));
-      made(row, "span", "number", answers.object[i] === data.none ? "" : data.nameOf(i, answers.object[i]));
+      const name = object === data.none ? "" : data.nameOf(queries.scene[i], object);
+      const texts = [`${SYMBOLS[kind]} ${kind === "part" ? `clear, ${data.left[i].length} left out` : kind}`, queries.id[i],
+        data.saysOnlyWhether(i) ? `≤ ${inDigits(answers.hi[i])}` : inDigits(answers.t[i]), inDigits(widthOf(data, i), 2),
+        object === data.none ? "" : name ? `${object} (${name})` : `${object}`];
+      texts.forEach((text, k) => (made(row, "span", k === 0 ? kind : k > 1 ? "number" : "", text).title = text));
     }
   }
 }

@@ -22,14 +22,27 @@ class Camera {
   eye() {
     return minus(this.target, times(this.distance, this.axes()[2]));
   }
+  /** Where pictures begin: as far from the eye as lets depths of far things differ, and yet before the target. */
+  nearest(farthest) {
+    return Math.min(Math.max(1e-3 * this.distance, 1e-5 * farthest), 0.05 * this.distance);
+  }
   /** Columns of the matrix from places relative to the eye to clip coordinates. */
-  clipFromEye(aspect, farthest) {
-    const [right, up, forward] = this.axes();
-    const near = Math.max(1e-3 * this.distance, 1e-5 * farthest), far = farthest + near;
+  clipFromEye(aspect, near, farthest) {
+    const [right, up, forward] = this.axes(), far = farthest + near;
     const x = 1 / (this.slope * aspect), y = 1 / this.slope;
     const depth = (far + near) / (far - near), shift = (-2 * far * near) / (far - near);
     const columns = [0, 1, 2].map((k) => [x * right[k], y * up[k], depth * forward[k], forward[k]]);
     return new Float32Array([...columns.flat(), 0, 0, shift, 0]);
+  }
+  /** Looks at the middle of a box, from where all of it is seen, with some room. */
+  looking({ lo, hi }, aspect) {
+    const [right, up, forward] = this.axes(), target = between(lo, hi, 0.5), room = 0.85 * this.slope;
+    let distance = 0.6 * lengthOf(minus(hi, lo)) || 1;
+    for (let corner = 0; corner < 8; ++corner) {
+      const from = minus([0, 1, 2].map((k) => (corner & (1 << k) ? hi[k] : lo[k])), target), depth = dot(from, forward);
+      distance = Math.max(distance, Math.abs(dot(from, right)) / (room * aspect) - depth, Math.abs(dot(from, up)) / room - depth);
+    }
+    return { target, distance };
   }
   /** Where a place is on a canvas of that size, in pixels from the upper left corner; its depth. */
   pixel(place, width, height) {

@@ -53,6 +53,7 @@ class Scene:
         names: list[str],
         arrays: dict[str, npt.NDArray[Any]],
         reasons: dict[int, str],
+        left_out: dict[int, list[int]],
     ) -> str:
         """`count` casts, of which `names` and `arrays`, C-contiguous, are the first: what was asked, and the answers."""
 

@@ -332,6 +332,8 @@ class Scene:
         casts.hits = None if listed is None else Hits(**listed[0], offsets=listed[1], of_shape=shape)
         casts.overlapping = None if overlapping is None else Overlapping(*overlapping, shape)
         casts.reasons = reasons
+        for name, of_type in (("clearance", np.float64), ("any_hit", np.uint8)):
+            arguments.setdefault(name, np.broadcast_to(np.asarray(options[name], of_type), shape))
         casts._asked = Asked.of(self, arguments, shape)
         return casts
 

@@ -76,10 +76,14 @@ def page_of(casts: Casts, asked: Asked | None, title: str) -> str:
     numbers = asked.number.reshape(-1)[:shown]
     places = np.stack(np.unravel_index(numbers, asked.shape), axis=-1) if asked.shape else np.empty((1, 0))
     names = [", ".join(map(str, place)) or "cast" for place in places.tolist()]
+    left_out: dict[int, list[int]] = {}
+    if casts.overlapping is not None:
+        rows, offsets = casts.overlapping.object.tolist(), casts.overlapping.offsets.tolist()
+        left_out = {i: rows[offsets[i] : offsets[i + 1]] for i in range(shown) if offsets[i] < offsets[i + 1]}
     reasons = {int(i): reason for reason, found in casts.reasons.items() for i in found if i < shown}
     scene = asked.scene
     with scene._reading() as engine:
-        return engine.page(scene.names, title, casts.status.size, names, arrays, reasons)
+        return engine.page(scene.names, title, casts.status.size, names, arrays, reasons, left_out)
 
 
 def write(page: str, file: str | os.PathLike[str]) -> pathlib.Path:

@@ -9,7 +9,7 @@
 
 #include "batch/answer_rows.h"
 #include "batch/columns.h"
-#include "batch/json_input.h"
+#include "import/json_input.h"
 #include "batch/json_output.h"
 #include "batch/mapped_file.h"
 #include "batch/part_file.h"

@@ -43,14 +43,16 @@ struct Row {
   Times times{query, result};
 };
 
-/// The lines that have a member: stepsAndHits those of steps, timed with a speed, sampled in that mode; hits are those
-/// that a line lists.
-enum class In { none, lines, linesAndHits, stepsAndHits, timed, sampled };
+/// The lines that have a member: stepsAndHits those of steps, nearAndHits those with a clearance, timed with a speed,
+/// sampled in that mode; hits are those that a line lists.
+enum class In { none, lines, linesAndHits, stepsAndHits, nearAndHits, timed, sampled };
+
+constexpr size_t kNowhere = ~size_t{0};
 
 struct AnswerField {
   const char* name;
   const char* type;  ///< in a record, as numpy writes it
-  size_t place;      ///< in a record
+  size_t place;      ///< in a record, or kNowhere
   /// NaN is null; in a record so is an infinity, and in whole numbers null is -1.
   double (*value)(const Row& row, size_t part);
   In in = In::lines;
@@ -85,6 +87,13 @@ double valueOf(const Row& row, size_t part) {
   }
 }
 
+/// The sensor's point that is nearest to the touched surface.
+double sensorPoint(const Row& row, size_t part) {
+  const Result& result = row.result;
+  if (std::isnan(result.gap)) return kNull;
+  return std::isnan(result.normal[0]) ? result.point[part] : result.point[part] + result.gap * result.normal[part];
+}
+
 template <class Code>
 std::string wordOf(double value) {
   return "\"" + std::string(nameOf(static_cast<Code>(value))) + "\"";
@@ -99,7 +108,7 @@ constexpr AnswerField kObject{"object", "<i8", 120, valueOf<&Result::object>, In
 // In the order of lines.
 constexpr AnswerField kFields[] = {
     {"query", "<u8", 0, [](const Row& row, size_t) { return double(row.index); }, In::none},
-    {"status", "|u1", 144, valueOf<&Result::status>, In::lines, wordOf<Status>},
+    {"status", "|u1", 152, valueOf<&Result::status>, In::lines, wordOf<Status>},
     {"t", "<f8", 8, valueOf<&Times::t>, In::linesAndHits},
     {"lo", "<f8", 16, valueOf<&Times::lo>, In::linesAndHits},
     {"hi", "<f8", 24, valueOf<&Times::hi>, In::linesAndHits},
@@ -107,22 +116,25 @@ constexpr AnswerField kFields[] = {
     {"fraction_lo", "<f8", 40, valueOf<&Times::fractionLo>, In::stepsAndHits},
     {"fraction_hi", "<f8", 48, valueOf<&Times::fractionHi>, In::stepsAndHits},
     {"time", "<f8", 56, valueOf<&Times::time>, In::timed},
-    {"detected", "|i1", 148, valueOf<&Result::detected>, In::lines,
+    {"detected", "|i1", 156, valueOf<&Result::detected>, In::lines,
      [](double v) { return std::string(v == 0 ? "false" : "true"); }},
     kObject,
     {"tri_a", "<i8", 128, valueOf<&Result::triA>, In::linesAndHits},
     {"tri_b", "<i8", 136, valueOf<&Result::triB>, In::linesAndHits},
-    {"feature_a", "|u1", 146, valueOf<&Result::featureA>, In::linesAndHits, featureWord},
-    {"feature_b", "|u1", 147, valueOf<&Result::featureB>, In::linesAndHits, featureWord},
+    {"feature_a", "|u1", 154, valueOf<&Result::featureA>, In::linesAndHits, featureWord},
+    {"feature_b", "|u1", 155, valueOf<&Result::featureB>, In::linesAndHits, featureWord},
     {"point", "<f8", 72, valueOf<&Result::point>, In::linesAndHits, nullptr, 3},
     {"normal", "<f8", 96, valueOf<&Result::normal>, In::linesAndHits, nullptr, 3},
-    {"tier", "|u1", 145, valueOf<&Result::tier>, In::lines, wordOf<Tier>},
+    {"gap", "<f8", 144, valueOf<&Result::gap>, In::nearAndHits},
+    {"sensor_point", "<f8", kNowhere, sensorPoint, In::nearAndHits, nullptr, 3},
+    {"tier", "|u1", 153, valueOf<&Result::tier>, In::lines, wordOf<Tier>},
     {"paper_min_l", "<f8", 64, [](const Row& row, size_t) { return row.isSampled ? row.result.paperMinL : kNull; },
      In::sampled},
 };
 
 bool isIn(In in, const Row& row, bool isHit) {
   return in == In::linesAndHits || (in == In::stepsAndHits && row.query.motion) ||
+         (in == In::nearAndHits && row.query.clearance > 0) ||
          (!isHit && (in == In::lines || (in == In::timed && row.query.speed) || (in == In::sampled && row.isSampled)));
 }
 
@@ -224,7 +236,7 @@ void appendRecord(std::string& records, uint64_t index, const QuerySpec& query, 
   const size_t start = records.size();
   records.resize(start + kRecordLength);
   for (const AnswerField& field : kFields) {
-    for (size_t part = 0; part < field.width; ++part) {
+    for (size_t part = 0; part < field.width && field.place != kNowhere; ++part) {
       char* const to = &records[start + field.place + 8 * part];
       const double value = field.value(row, part);
       if (field.type[2] == '1') {
@@ -240,6 +252,7 @@ void appendRecord(std::string& records, uint64_t index, const QuerySpec& query, 
 
 std::string recordDescription() {
   std::vector<AnswerField> fields(std::begin(kFields), std::end(kFields));
+  std::erase_if(fields, [](const AnswerField& field) { return field.place == kNowhere; });
   std::ranges::sort(fields, {}, &AnswerField::place);
   std::string text = "[";
   for (const AnswerField& field : fields) {

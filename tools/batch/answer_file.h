@@ -25,7 +25,7 @@ struct Answer {
 std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames = {});
 
 /// The same as a record of numpy's, whose type recordDescription() says; NaN and -1 for null.
-inline constexpr size_t kRecordLength = 152;
+inline constexpr size_t kRecordLength = 160;
 void appendRecord(std::string& records, uint64_t index, const QuerySpec& query, const Answer& answer);
 std::string recordDescription();
 

@@ -43,10 +43,7 @@ Result resultOf(const RowReader& row, Status status, const Workload& workload, c
     const uint32_t touched = workload.instance(query.scene, result.object).mesh;
     result.triB = idIn(row, "tri_b", workload.meshes[touched].triangleCount(), file);
   }
-  const auto readGap = [&](auto& to) {
-    if constexpr (requires { to.gap; }) to.gap = row.number("gap", 0);
-  };
-  readGap(result);
+  result.gap = row.number("gap", 0);
   for (size_t k = 0; k < 3; ++k) {
     result.point[k] = row.number("point", k);
     result.normal[k] = row.number("normal", k);

@@ -25,7 +25,7 @@ size_t stringLength(std::string_view text) {
   return 0;
 }
 
-constexpr size_t kStatusPlace = 144;  // in a record
+constexpr size_t kStatusPlace = 152;  // in a record
 
 }  // namespace
 

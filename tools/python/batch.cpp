@@ -222,14 +222,13 @@ size_t BatchInput::count() const {
   return count;
 }
 
-void BatchOutput::write(size_t i, const Result& result, bool anyHit) const {
+void BatchOutput::write(size_t i, const Result& result) const {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
   const bool met = result.status == Status::hit || result.status == Status::overlap;
   const bool clear = result.status == Status::clear, undecided = result.status == Status::undecided;
   const double none = clear ? kInfinity : kNaN;
-  // Nobody looked for the first contact: it comes by hi, the end of the way.
-  distance[i] = !met ? none : anyHit ? result.hi : result.t;
-  fraction[i] = !met ? none : anyHit ? double(result.hi > 0) : result.fraction;
+  distance[i] = met ? result.t : none;
+  fraction[i] = met ? result.fraction : none;
   lo[i] = met || undecided ? result.lo : none;
   hi[i] = met ? result.hi : undecided ? kInfinity : none;
   status[i] = static_cast<uint8_t>(result.status);
@@ -242,6 +241,7 @@ void BatchOutput::write(size_t i, const Result& result, bool anyHit) const {
   features[2 * i + 1] = static_cast<uint8_t>(result.featureB);
   std::copy(result.point.begin(), result.point.end(), point + 3 * i);
   std::copy(result.normal.begin(), result.normal.end(), normal + 3 * i);
+  gap[i] = result.gap;
   if (paperMinL) paperMinL[i] = result.paperMinL;
   if (resolution) resolution[i] = result.resolution;
 }
@@ -265,7 +265,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
     Answers answers = answer(scene, queries, input.mode);
     timesToDistances(queries, answers);
     inParts(end - first, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i], input.options.anyHit);
+      for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i]);
     });
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
     if (listing) answers.lists.resize(queries.size());  // there are none if no query is valid

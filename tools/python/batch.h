@@ -47,10 +47,11 @@ struct BatchOutput {
   int64_t *object = nullptr, *triangles = nullptr;  ///< triangles: 2
   uint8_t* features = nullptr;                      ///< 2
   double *point = nullptr, *normal = nullptr;       ///< 3 each
+  double* gap = nullptr;
   double* paperMinL = nullptr;                      ///< null where not wanted
   uint32_t* resolution = nullptr;                   ///< null where not wanted
 
-  void write(size_t i, const Result& result, bool anyHit) const;
+  void write(size_t i, const Result& result) const;
 };
 
 /// What the answers of a batch list: nothing unless the queries ask for several hits or skip what overlaps.

@@ -214,6 +214,7 @@ BatchOutput outputFrom(const py::dict& arrays, size_t count) {
   to.features = output<uint8_t>(arrays, "features", 2 * count);
   to.point = output<double>(arrays, "point", 3 * count);
   to.normal = output<double>(arrays, "normal", 3 * count);
+  to.gap = output<double>(arrays, "gap", count);
   if (arrays.contains("paper_min_l")) to.paperMinL = output<double>(arrays, "paper_min_l", count);
   if (arrays.contains("resolution")) to.resolution = output<uint32_t>(arrays, "resolution", count);
   return to;
@@ -267,7 +268,7 @@ py::tuple listsFor(const Query& options, BatchLists&& found, const py::function&
     const size_t count = found.hits.size();
     const py::dict arrays = makeArrays(count);
     const BatchOutput to = outputFrom(arrays, count);
-    for (size_t i = 0; i < count; ++i) to.write(i, found.hits[i], false);
+    for (size_t i = 0; i < count; ++i) to.write(i, found.hits[i]);
     hits = py::make_tuple(arrays, whole(found.hitOffsets));
   }
   if (options.skipOverlapping) {

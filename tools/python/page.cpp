@@ -69,6 +69,7 @@ std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::stri
     result.triB = idFrom(answers.triangles[2 * i + 1]);
     std::copy_n(answers.point + 3 * i, 3, result.point.begin());
     std::copy_n(answers.normal + 3 * i, 3, result.normal.begin());
+    result.gap = answers.gap[i];
   }
   tools::PageContent content;
   content.title = title;

@@ -168,10 +168,6 @@ Json answersJson(std::span<const Result> answers) {
   std::vector<uint8_t> status;
   std::vector<uint32_t> object, triA, triB;
   std::vector<double> t, lo, hi, point, normal, gap;
-  const auto gapOf = [](const auto& answer) {
-    if constexpr (requires { answer.gap; }) return answer.gap;
-    return double{NAN};
-  };
   for (const Result& answer : answers) {
     status.push_back(static_cast<uint8_t>(answer.status));
     t.push_back(answer.t);
@@ -182,7 +178,7 @@ Json answersJson(std::span<const Result> answers) {
     triB.push_back(answer.triB);
     point.insert(point.end(), answer.point.begin(), answer.point.end());
     normal.insert(normal.end(), answer.normal.begin(), answer.normal.end());
-    gap.push_back(gapOf(answer));
+    gap.push_back(answer.gap);
   }
   return {{"status", array(status)}, {"t", array(t)},       {"lo", array(lo)},     {"hi", array(hi)},
           {"object", array(object)}, {"triA", array(triA)}, {"triB", array(triB)}, {"point", array(point)},

@@ -58,6 +58,7 @@ _FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
     "features": (np.uint8, (2,)),
     "point": (np.float64, (3,)),
     "normal": (np.float64, (3,)),
+    "gap": (np.float64, ()),
 }
 _SAMPLED_FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
     "paper_min_l": (np.float64, ()),
@@ -73,7 +74,7 @@ class Casts:
     """Answers as arrays, each of the casts' leading shape (...).
 
     Distances are in world units along the displacement. A number that an answer does not have is NaN, an id -1; a
-    distance is infinite if there is no contact. 109 bytes a cast, and 12 more in mode "sampled".
+    distance is infinite if there is no contact. 117 bytes a cast, and 12 more in mode "sampled".
 
     An index into the leading shape gives the casts there, with all that they list, as numpy's index would: casts[3],
     casts[:, 0], casts[casts.touches]. len() and iteration go through the first dimension.
@@ -104,6 +105,8 @@ class Casts:
     """(..., 3) where they touch, in world units, at the moment of contact."""
     normal: npt.NDArray[np.float64]
     """(..., 3) of length 1, from the touched surface towards the moving one."""
+    gap: npt.NDArray[np.float64]
+    """(...) how far apart the surfaces are at `distance`: 0, or with a clearance up to that; at the start the least."""
     paper_min_l: npt.NDArray[np.float64] | None = None
     """(...) mode "sampled": the paper's literal min(L), for comparison; may be negative, too early or too late."""
     resolution: npt.NDArray[np.uint32] | None = None
@@ -125,6 +128,11 @@ class Casts:
     def shape(self) -> tuple[int, ...]:
         """The leading shape of all arrays."""
         return self.distance.shape
+
+    @property
+    def sensor_point(self) -> npt.NDArray[np.float64]:
+        """(..., 3) the moving mesh's point that is nearest to `point`, `gap` away, in world units, at that moment."""
+        return self.point + np.where(self.gap > 0, self.gap, 0)[..., None] * np.nan_to_num(self.normal)
 
     @property
     def touches(self) -> npt.NDArray[np.bool_]:

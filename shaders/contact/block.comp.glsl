@@ -81,8 +81,6 @@ int isNotZero(BoundedVector v) { return any(greaterThan(abs(v.value), v.error)) 
 // The pair, beside its corners.
 BoundedVector direction;
 Bounded slack;
-// The normal of b, before its corners turn.
-BoundedVector outwards;
 
 BoundedVector selected(bool first, BoundedVector p, BoundedVector q) {
   return BoundedVector(first ? p.value : q.value, first ? p.error : q.error);
@@ -135,24 +133,20 @@ Depths depthsAlong(BoundedVector n) {
 
 // Whether n or -n keeps the triangles apart, and the motion does not go against it. `isAcross`: n is orthogonal to the
 // direction. `turn`: if not 0, only what leads outwards from b counts, as its normal does, times `turn`.
-int separates(BoundedVector n, bool isAcross, double turn) {
+int separates(BoundedVector n, bool isAcross, int turn) {
+  const Bounded along = inner(n, direction), leads = times(inner(n, normalOf(false)), double(turn));
+  const bool isAny = turn == 0;
+  const int outwards = min(isAny ? kYes : isPositive(leads), isAcross ? kYes : -isPositive(negative(along)));
+  const int inwards = min(isAny ? kYes : isPositive(negative(leads)), isAcross ? kYes : -isPositive(along));
   const Depths depths = depthsAlong(n);
-  const Bounded along = inner(n, direction);
-  int forward = min(-isPositive(depths.forward), isAcross ? kYes : -isPositive(negative(along)));
-  int backward = min(-isPositive(depths.backward), isAcross ? kYes : -isPositive(along));
-  if (turn != 0.0LF) {
-    const Bounded leads = times(inner(n, outwards), turn);
-    forward = min(forward, isPositive(leads));
-    backward = min(backward, isPositive(negative(leads)));
-  }
+  const int forward = min(-isPositive(depths.forward), outwards), backward = min(-isPositive(depths.backward), inwards);
   return min(isNotZero(n), max(forward, backward));
 }
 
 // Whether no normal keeps the triangles apart. Those that may are the two faces'; the direction's products with the six edges;
 // and the products of an edge of each.
-int areInseparable(double turn) {
-  int exists = kOpen, apart = kNo;
-  outwards = normalOf(false);
+int areInseparable(int turn, int apart) {
+  int exists = kOpen;
   [[dont_unroll]] for (uint k = 0; k < 17 && apart != kYes; ++k) {
     // Of an edge of a: its products with all edges of b, and with the direction; then that of the direction with an edge of b,
     // and after the first two edges a face's normal.
@@ -193,14 +187,12 @@ int areFlush(int facing) {
   return flush;
 }
 
-// Whether flush triangles would sink into each other by more than the slack: no plane that has the solid behind b on its one
-// side, and a on the other, does for the whole motion, which is `distance` / `length` times the direction.
-int isPressing(bool isMirroredB, double distance, double length) {
+// Whether the motion, which is `distance` / `length` times the direction, sinks by more than the slack into what is behind b.
+// `turn`: -1 if b is mirrored, else 1.
+int sinks(int turn, double distance, double length) {
   const BoundedVector normal = normalOf(false);
-  const double turn = isMirroredB ? -1.0LF : 1.0LF;
-  const Bounded sinking = times(inner(direction, normal), -turn * distance);
-  const int sinks = isPositive(minus(sinking, times(allowedAlong(normal), length)));
-  return sinks == kNo ? kNo : min(sinks, areInseparable(turn));
+  const Bounded sinking = times(inner(direction, normal), double(-turn) * distance);
+  return isPositive(minus(sinking, times(allowedAlong(normal), length)));
 }
 
 // `x` if `sign` is kYes, -x if it is kNo.
@@ -226,9 +218,12 @@ int blocks(Sweep sweep, PreciseRows pose, bool isLate, out bool mayBePressed) {
   const int flush = areFlush(facing);
   mayBePressed = flush != kNo;
   if (flush == kYes && isAtRest(sweep)) return kNo;
-  if (flush == kYes && mirroredB == kOpen) return kOpen;
-  if (flush == kYes) return isPressing(mirroredB == kYes, sweep.distance, sweep.perParameter);
-  return flush == kOpen ? kOpen : isLate ? kNo : areInseparable(0.0LF);
+  // Of flush triangles, b stands for the solid behind it.
+  const bool isFlush = flush == kYes;
+  const int turn = !isFlush ? 0 : mirroredB == kYes ? -1 : 1;
+  if (flush == kOpen || (isFlush && mirroredB == kOpen)) return kOpen;
+  if (!isFlush && isLate) return kNo;
+  return areInseparable(turn, isFlush ? -sinks(turn, sweep.distance, sweep.perParameter) : kNo);
 }
 
 void main() {

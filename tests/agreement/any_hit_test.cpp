@@ -35,7 +35,8 @@ TEST_CASE("in mode sampled a decision is that of the whole answer") {
   for (size_t i = 0; i < queries.size(); ++i) {
     CAPTURE(i);
     CHECK(uint32_t(decided[i].status) == uint32_t(decisionOf(whole[i].status)));
-    CHECK((!std::isfinite(decided[i].t) && decided[i].object == kNone && std::isnan(decided[i].point[0])));
+    CHECK((decided[i].status == Status::hit ? decided[i].t == decided[i].hi : !std::isfinite(decided[i].t)));
+    CHECK((decided[i].object == kNone && std::isnan(decided[i].point[0])));
     CHECK((decided[i].detected == whole[i].detected && decided[i].resolution == whole[i].resolution));
     if (decided[i].status != Status::hit) continue;
     CHECK(decided[i].lo == 0);

@@ -39,7 +39,7 @@ bool checkShaderResult(const Renderer::ShaderResult& found, const Result& expect
   if (found.flags == Flag::unresolved) {
     const bool isHit = found.status == static_cast<uint32_t>(Status::hit);
     CHECK((isHit ? expected.status == Status::hit : found.status == static_cast<uint32_t>(Status::undecided)));
-    CHECK_FALSE(found.t > expected.t);  // a decision has no t
+    CHECK_FALSE(found.t > expected.t);
     return true;
   }
   CHECK(found.flags == 0);

@@ -93,7 +93,7 @@ def allowed(sources):
     """The slack times the greatest component of a normal."""
     largest, slack = bounded("n", nonnegative=True), bounded("slack", nonnegative=True)
     variables = {"slack": slack, "largest": largest["value"], "error": largest["error"]}
-    result = Evaluator(sources, DEVICE_DOUBLES).expression("depthsAlong", ALLOWED, **variables)
+    result = Evaluator(sources, DEVICE_DOUBLES).expression("allowedAlong", ALLOWED, **variables)
     yield Inequality("slack along a normal", result["error"].least, result["value"].error, [UNDERFLOW])
 
 
@@ -133,5 +133,5 @@ def claims():
         Claim("difference of exact vectors", "difference", [HALF_ULP], BLOCK, exact),
         Claim("inner product", "inner", PRODUCT, BLOCK, inner),
         Claim("cross product", "crossProduct", PRODUCT, BLOCK, cross),
-        Claim("slack along a normal", "depthsAlong", [HALF_ULP, MORE], BLOCK, allowed),
+        Claim("slack along a normal", "allowedAlong", [HALF_ULP, MORE], BLOCK, allowed),
     ]

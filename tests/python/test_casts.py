@@ -323,7 +323,7 @@ def test_casts_have_a_length_and_are_gone_through():
 
 
 def test_casts_become_a_dict_of_arrays(tmp_path):
-    for mode, count in (("contact", 12), ("sampled", 14)):
+    for mode, count in (("contact", 13), ("sampled", 15)):
         casts = cyber_radar.Casts.empty((5, 2), mode)
         arrays = casts.to_dict()
         assert len(arrays) == count and arrays["distance"] is casts.distance

@@ -35,6 +35,7 @@ Result hit() {
   result.featureB = Feature::face;
   result.point = {1, -2.5, kInfinity};
   result.normal = {0, 0.6, -0.8};
+  result.gap = 0.125;
   result.paperMinL = -0.25;
   return result;
 }
@@ -69,6 +70,7 @@ std::vector<Asked> allKinds() {
   all[7].answer = all[6].answer;
   all[7].answer.listed = {.hits = {all[6].answer.result, Result(Status::undecided)}, .overlapping = {3, 100'000}};
   all[8].query.hits = 2;
+  all[8].query.clearance = 0.25;
   all[8].query.scene = 1;
   all[8].answer = {.result = hit(), .listed = {.hits = {hit()}}};
   all[8].answer.result.object = all[8].answer.listed.hits[0].object = 1;

@@ -95,10 +95,10 @@ Writer triangle() {
   return writer;
 }
 
-std::vector<float> cornersOf(const MeshData& mesh) {
+std::vector<float> cornersOf(const FileMesh& mesh) {
   std::vector<float> corners;
   for (const uint32_t index : mesh.indices) {
-    for (size_t k = 0; k < 3; ++k) corners.push_back(mesh.positions[3 * size_t{index} + k]);
+    for (size_t k = 0; k < 3; ++k) corners.push_back(float(mesh.positions[3 * size_t{index} + k] + mesh.base[k]));
   }
   return corners;
 }

@@ -8,9 +8,9 @@
 namespace radar::test {
 
 /// Without any warning.
-inline tools::MeshData readWhole(const std::string& file) {
+inline tools::FileMesh readWhole(const std::string& file) {
   std::vector<std::string> warnings;
-  tools::MeshData mesh = tools::readMesh(file, warnings);
+  tools::FileMesh mesh = tools::readMesh(file, warnings);
   CHECK(warnings.empty());
   return mesh;
 }

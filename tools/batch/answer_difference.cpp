@@ -9,10 +9,10 @@
 
 #include "batch/answer_rows.h"
 #include "batch/columns.h"
-#include "import/json_input.h"
 #include "batch/json_output.h"
 #include "batch/mapped_file.h"
 #include "batch/part_file.h"
+#include "import/json_input.h"
 
 namespace radar::tools {
 

@@ -5,8 +5,8 @@
 
 #include "batch/answer_rows.h"
 #include "batch/columns.h"
-#include "import/json_input.h"
 #include "batch/mapped_file.h"
+#include "import/json_input.h"
 
 namespace radar::tools {
 
@@ -43,7 +43,8 @@ Result resultOf(const RowReader& row, Status status, const Workload& workload, c
     const uint32_t touched = workload.instance(query.scene, result.object).mesh;
     result.triB = idIn(row, "tri_b", workload.meshes[touched].triangleCount(), file);
   }
-  result.gap = row.number("gap", 0);
+  const bool touches = result.object != kNone && (status == Status::hit || status == Status::overlap);
+  result.gap = query.clearance > 0 ? row.number("gap", 0) : touches ? 0 : double{NAN};
   for (size_t k = 0; k < 3; ++k) {
     result.point[k] = row.number("point", k);
     result.normal[k] = row.number("normal", k);

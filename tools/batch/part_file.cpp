@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
-#include "import/json_input.h"
 #include "batch/json_output.h"
 #include "batch/mapped_file.h"
+#include "import/json_input.h"
 
 namespace radar::tools {
 

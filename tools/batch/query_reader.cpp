@@ -10,9 +10,9 @@
 #include <span>
 #include <unordered_set>
 
-#include "import/json_input.h"
 #include "batch/query_file.h"
 #include "batch/query_reader.h"
+#include "import/json_input.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
 #include "workloads/query_fields.h"

@@ -80,8 +80,8 @@ void requireUtf8(const std::string& file, const std::string& extension, std::str
 
 MeshFile readFile(const std::filesystem::path& file) {
   using Reader = MeshFile (*)(Text);
-  static const std::map<std::string, Reader> kReaders{{".obj", readObj},  {".stl", readStl},     {".ply", readPly},
-                                                      {".off", readOff},  {".3mf", readThreeMf}, {".gltf", readGltf},
+  static const std::map<std::string, Reader> kReaders{{".obj", readObj}, {".stl", readStl},     {".ply", readPly},
+                                                      {".off", readOff}, {".3mf", readThreeMf}, {".gltf", readGltf},
                                                       {".glb", readGltf}};
   const std::string name = file.string();
   std::string extension = file.extension().string();

@@ -48,10 +48,9 @@ MeshName splitMeshName(const std::filesystem::path& name);
 /// float, about a base (floatVertices()), with a warning that says by how much if that spoils the mesh. Faces of more
 /// than three corners are split: into a fan from their first corner, if it does not leave the face, else by cutting
 /// corners off. A warning counts those that are not plane or cross themselves. Points and lines are dropped and counted
-/// in a warning. Triangles that a mirroring transform places are wound the other way round, so that what is outside stays
-/// outside. No vertex is joined or moved, no face removed, and only of glTF
-/// are unused vertices left out. With a FILE#NODE, reads that node's meshes
-/// only, in the node's own frame.
+/// in a warning. Triangles that a mirroring transform places are wound the other way round, so that what is outside
+/// stays outside. No vertex is joined or moved, no face removed, and only of glTF are unused vertices left out. With a
+/// FILE#NODE, reads that node's meshes only, in the node's own frame.
 ///
 /// OBJ, STL, PLY, OFF, 3MF and glTF 2 are read here: a number in text becomes the nearest double.
 /// Assimp reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it

@@ -1,4 +1,5 @@
-// The readers of OBJ, STL, PLY, OFF, 3MF and glTF 2, whose numbers become the nearest doubles, and that of all other formats.
+// The readers of OBJ, STL, PLY, OFF, 3MF and glTF 2, whose numbers become the nearest doubles, and that of all other
+// formats.
 //
 // A file that ends early, names a vertex that does not exist or is otherwise broken is refused with an InputError.
 #pragma once

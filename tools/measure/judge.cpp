@@ -101,7 +101,7 @@ void judgeWhole(const Scene& scene, const Query& query, const Result& result, co
 /// An answer that tells whether there is a contact, and nothing else of it.
 void judgeDecision(const Result& result, Verdict& verdict) {
   verdict.set(Fault::wrongStatus, result.status == Status::overlap);
-  verdict.set(Fault::late, !std::isnan(result.t) || !std::isnan(result.fraction));
+  verdict.set(Fault::late, result.t != result.hi || result.fraction != (result.hi > 0 ? 1 : 0));
   verdict.set(Fault::wrongPair, result.object != kNone || result.triA != kNone || result.triB != kNone);
   verdict.set(Fault::wrongPair, result.featureA != Feature::none || result.featureB != Feature::none);
   verdict.set(Fault::point, !std::isnan(result.point[0]));
@@ -113,7 +113,7 @@ void judgeSampled(const Query& query, const Result& result, const Result& exact,
   verdict.set(Fault::bracket, result.lo != 0);
   if (!meets(result)) return verdict.set(Fault::bracket, result.hi != INFINITY);
   verdict.set(Fault::wrongStatus, result.status == Status::overlap && exact.status != Status::overlap);
-  verdict.set(Fault::bracket, !query.anyHit && result.t != result.hi);
+  verdict.set(Fault::bracket, result.t != result.hi);
 }
 
 }  // namespace
@@ -175,6 +175,7 @@ Verdict judge(const Scene& scene, const Query& query, Mode mode, const Result& r
   if (query.clearance > 0) return judgeByBits(result, exact);
   const double unit = unitOf(scene, query, exact);
   verdict = judge(result, exact, unit);
+  if (query.anyHit) verdict.error = 0;  // nobody looked for the first contact
   const bool sampled = mode == Mode::sampled;
   if (result.status == Status::clear) {
     verdict.set(Fault::bracket, !sampled && std::min({result.t, result.lo, result.hi}) != INFINITY);

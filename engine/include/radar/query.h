@@ -42,8 +42,8 @@ struct Query {
 
   /// Mode contact: counts only pairs of triangles that block, as placed at the start. A pair does not block if a plane
   /// keeps the triangles apart and the motion does not go against it: what rests on something may leave it or slide
-  /// along it. Triangles in one plane that face each other and overlap block exactly if the direction goes into the
-  /// object's. Exact for closed meshes, wound outwards, whose interiors are disjoint at the start; docs/exact.md has
+  /// along it. Triangles in one plane that face each other and overlap block exactly if the motion would sink into
+  /// the object's by more than the slack. Exact for closed meshes, wound outwards, whose interiors are disjoint at the start; docs/exact.md has
   /// the rule.
   bool ignoreLeaving = false;
   /// Mode contact: objects whose surfaces cross the sensor's at the start, by more than the slack, take no part and are
@@ -58,7 +58,8 @@ struct Query {
   /// is lo, and hi - lo at most `tolerance`, if rounding allows: an object that passes at the clearance to within
   /// rounding leaves the answer undecided, or lowers lo. (Slivers that are 10^11 times as long as the clearance are
   /// decided, in double-doubles.) `normal` may point along the motion if they are in contact at the start. With
-  /// `ignoreLeaving`, pairs that do not block take no part, however near they come.
+  /// `ignoreLeaving`, pairs take no part that from their start on come no nearer than the clearance, or than they start
+  /// (docs/exact.md, "With a clearance"). With `skipOverlapping`, what is within the clearance without crossing stays.
   double clearance = 0;
   /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
   /// sensor's box.

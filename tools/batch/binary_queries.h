@@ -14,8 +14,8 @@ namespace radar::tools {
 
 class BinaryQueries {
  public:
-  /// `world`: the meshes and scenes that the queries name; the first ones, of these bases, may be sensors. Checks names,
-  /// types and shapes of the columns. Throws InputError that names file and column. `world` must outlive this.
+  /// `world`: the meshes and scenes that the queries name; the first ones, of these bases, may be sensors. Checks
+  /// names, types and shapes of the columns. Throws InputError that names file and column. `world` must outlive this.
   BinaryQueries(const std::filesystem::path& file, const Workload& world, std::vector<std::array<double, 3>> bases);
 
   uint64_t count() const { return columns_.rows(); }

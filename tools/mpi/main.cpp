@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "batch/atomic_file.h"
-#include "measure/clock.h"
 #include "commit/commit.h"
 #include "cyber_radar/command_line.h"
 #include "cyber_radar/exit_status.h"
 #include "cyber_radar/query_run.h"
+#include "measure/clock.h"
 #include "mpi/coordinator.h"
 
 namespace radar::tools {

@@ -48,8 +48,8 @@ struct BatchOutput {
   uint8_t* features = nullptr;                      ///< 2
   double *point = nullptr, *normal = nullptr;       ///< 3 each
   double* gap = nullptr;
-  double* paperMinL = nullptr;                      ///< null where not wanted
-  uint32_t* resolution = nullptr;                   ///< null where not wanted
+  double* paperMinL = nullptr;     ///< null where not wanted
+  uint32_t* resolution = nullptr;  ///< null where not wanted
 
   void write(size_t i, const Result& result) const;
 };

@@ -43,16 +43,17 @@ struct Query {
   /// Mode contact: counts only pairs of triangles that block, as placed at the start. A pair does not block if a plane
   /// keeps the triangles apart and the motion does not go against it: what rests on something may leave it or slide
   /// along it. Triangles in one plane that face each other and overlap block exactly if the motion would sink into
-  /// the object's by more than the slack. Exact for closed meshes, wound outwards, whose interiors are disjoint at the start; docs/exact.md has
-  /// the rule.
+  /// the object's by more than the slack. Exact for closed meshes, wound outwards, whose interiors are disjoint at the
+  /// start; docs/exact.md has the rule.
   bool ignoreLeaving = false;
   /// Mode contact: objects whose surfaces cross the sensor's at the start, by more than the slack, take no part and are
   /// listed (Listed::overlapping). Whether a motion deepens an interpenetration cannot be told from surfaces.
   bool skipOverlapping = false;
   /// With the two above, world units: by how much rounding may have let surfaces that touch sink into each other. Faces
   /// pressed together block even so, at t = 0; crossings no deeper are no overlap. It is for rounding: far below the
-  /// size of triangles, and at most a tenth of the longest side of the sensor's box or of the clearance. Without a value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms'
-  /// absolute values summed; within the bounds of a mesh that has some), which covers poses rounded once.
+  /// size of triangles, and at most a tenth of the longest side of the sensor's box or of the clearance. Without a
+  /// value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms' absolute values summed; within
+  /// the bounds of a mesh that has some), which covers poses rounded once.
   std::optional<double> slack{};
   /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t
   /// is lo, and hi - lo at most `tolerance`, if rounding allows: an object that passes at the clearance to within

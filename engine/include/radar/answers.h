@@ -27,7 +27,7 @@ struct RADAR_API Result {
   double t;                 ///< best estimate of t*, world units; tier sampled, and with anyHit: hi
   double lo, hi;            ///< the certified bracket, world units
   double fraction;          ///< t / D (0 if D is 0); of the step, if the query takes one
-  ObjectId object = kNone;  ///< the object touched
+  ObjectId object = kNone;  ///< the object touched; in mode sampled, by the least of the pairs that it has found
   uint32_t triB = kNone;    ///< its triangle
   uint32_t triA = kNone;    ///< the sensor's triangle
   uint32_t flags = 0;       ///< Flag: why a Recorder gave no answer; else 0

@@ -81,6 +81,8 @@ int isNotZero(BoundedVector v) { return any(greaterThan(abs(v.value), v.error)) 
 // The pair, beside its corners.
 BoundedVector direction;
 Bounded slack;
+// If not 0, only normals count that lead this way.
+vec3 outwards = vec3(0.0);
 
 BoundedVector selected(bool first, BoundedVector p, BoundedVector q) {
   return BoundedVector(first ? p.value : q.value, first ? p.error : q.error);
@@ -131,21 +133,29 @@ Depths depthsAlong(BoundedVector n) {
   return Depths(minus(forward, allowed), minus(backward, allowed));
 }
 
+// Which way n leads. The direction is off by less than 4e-7 of its greatest component.
+int leadsOutwards(BoundedVector n) {
+  const double along = n.value.x * double(outwards.x) + n.value.y * double(outwards.y) + n.value.z * double(outwards.z);
+  const double size = (abs(n.value.x) + abs(n.value.y)) + abs(n.value.z), error = (n.error.x + n.error.y) + n.error.z;
+  return isPositive(Bounded(along, 1.0e-6LF * size + 3.0LF * error));
+}
+
 // Whether n or -n keeps the triangles apart, and the motion does not go against it. `isAcross`: n is orthogonal to the
-// direction. `turn`: if not 0, only what leads outwards from b counts, as its normal does, times `turn`.
-int separates(BoundedVector n, bool isAcross, int turn) {
-  const Bounded along = inner(n, direction), leads = times(inner(n, normalOf(false)), double(turn));
-  const bool isAny = turn == 0;
-  const int outwards = min(isAny ? kYes : isPositive(leads), isAcross ? kYes : -isPositive(negative(along)));
-  const int inwards = min(isAny ? kYes : isPositive(negative(leads)), isAcross ? kYes : -isPositive(along));
+// direction.
+int separates(BoundedVector n, bool isAcross) {
+  const Bounded along = inner(n, direction);
+  const int outward = outwards == vec3(0.0) ? kYes : leadsOutwards(n);
+  const int inward = outwards == vec3(0.0) ? kYes : leadsOutwards(BoundedVector(-n.value, n.error));
   const Depths depths = depthsAlong(n);
-  const int forward = min(-isPositive(depths.forward), outwards), backward = min(-isPositive(depths.backward), inwards);
+  const int forward = min(min(-isPositive(depths.forward), outward), isAcross ? kYes : -isPositive(negative(along)));
+  const int backward = min(min(-isPositive(depths.backward), inward), isAcross ? kYes : -isPositive(along));
   return min(isNotZero(n), max(forward, backward));
 }
 
 // Whether no normal keeps the triangles apart. Those that may are the two faces'; the direction's products with the six edges;
 // and the products of an edge of each.
-int areInseparable(int turn, int apart) {
+// `apart`: what is known already.
+int areInseparable(int apart) {
   int exists = kOpen;
   [[dont_unroll]] for (uint k = 0; k < 17 && apart != kYes; ++k) {
     // Of an edge of a: its products with all edges of b, and with the direction; then that of the direction with an edge of b,
@@ -157,7 +167,7 @@ int areInseparable(int turn, int apart) {
     const BoundedVector y = selected(isPair || step == 4, edgeB, selected(step == 3, edgeA, secondEdgeOf(faceOfA)));
     const BoundedVector n = crossProduct(x, y);
     exists = max(exists, isNotZero(n));
-    apart = max(apart, separates(n, isAcross, turn));
+    apart = max(apart, separates(n, isAcross));
     if (isPair || step == 4) cycleB();
     if (step == 5) cycleA();
   }
@@ -188,9 +198,14 @@ int areFlush(int facing) {
 }
 
 // Whether the motion, which is `distance` / `length` times the direction, sinks by more than the slack into what is behind b.
-// `turn`: -1 if b is mirrored, else 1.
+// Sets `outwards`. `turn`: -1 if b is mirrored, else 1.
 int sinks(int turn, double distance, double length) {
   const BoundedVector normal = normalOf(false);
+  const double largest = max(abs(normal.value.x), max(abs(normal.value.y), abs(normal.value.z)));
+  if (max(normal.error.x, max(normal.error.y, normal.error.z)) > 1.0e-9LF * largest) return kOpen;
+  // By a power of two, to a greatest component of 1 to 2.
+  const int exponent = int(unpackDouble2x32(largest).y >> 20 & 0x7ffu);
+  outwards = vec3(normal.value * packDouble2x32(uvec2(0, uint(clamp(2046 - exponent, 1, 2046)) << 20))) * float(turn);
   const Bounded sinking = times(inner(direction, normal), double(-turn) * distance);
   return isPositive(minus(sinking, times(allowedAlong(normal), length)));
 }
@@ -218,12 +233,15 @@ int blocks(Sweep sweep, PreciseRows pose, bool isLate, out bool mayBePressed) {
   const int flush = areFlush(facing);
   mayBePressed = flush != kNo;
   if (flush == kYes && isAtRest(sweep)) return kNo;
-  // Of flush triangles, b stands for the solid behind it.
-  const bool isFlush = flush == kYes;
-  const int turn = !isFlush ? 0 : mirroredB == kYes ? -1 : 1;
-  if (flush == kOpen || (isFlush && mirroredB == kOpen)) return kOpen;
-  if (!isFlush && isLate) return kNo;
-  return areInseparable(turn, isFlush ? -sinks(turn, sweep.distance, sweep.perParameter) : kNo);
+  if (flush == kOpen || (flush == kNo && isLate)) return flush;
+  int apart = kNo;
+  if (flush == kYes) {
+    // b stands for the solid behind it.
+    apart = -sinks(mirroredB == kYes ? -1 : 1, sweep.distance, sweep.perParameter);
+    if (apart == kYes) return kNo;
+    if (mirroredB == kOpen || outwards == vec3(0.0)) return kOpen;
+  }
+  return areInseparable(apart);
 }
 
 void main() {

@@ -231,6 +231,27 @@ int exponentOf(const exact::Triangle& a, const exact::Triangle& b, double size) 
   return std::clamp(std::ilogb(size), -1000, 1000);
 }
 
+template <class Real>
+Nearing nearingOf(Pair<Real> pair, double slack) {
+  const Moment<Real> start = momentAt(pair, Real{});
+  if (start.most <= Real{slack}) return Nearing::pressed;
+  if (start.least <= Real{slack}) return Nearing::open;
+  // The distance is convex: what does not come nearer at the start never does. The nearest points' difference is that
+  // of the least length among all, and theirs is at most `most`: the two differ by at most `off`.
+  const Real off = Of<Real>::root((start.most - start.least) * (start.most + start.least));
+  if (start.least * start.rate + Real{4} * off < Real{}) return Nearing::no;
+  constexpr Real kMargin{16 * Of<Real>::unit};
+  const Real clearance = pair.clearance;
+  pair.clearance = (std::min(start.least, clearance) - Real{slack}) * (Real{1} - kMargin) - start.error;
+  pair.tolerance = Real{0x1p-6} * pair.clearance;
+  if (pair.clearance > Real{}) {
+    const auto found = search(pair);
+    if (found) return found->hi < Real{Of<Real>::never} ? Nearing::yes : Nearing::open;
+  }
+  pair.clearance = (std::min(start.most, clearance) - Real{slack}) * (Real{1} + kMargin) + start.error;
+  return search(pair) ? Nearing::open : Nearing::no;
+}
+
 }  // namespace
 
 Separation separationOf(const exact::Triangle& a, const exact::Triangle& b) {
@@ -270,6 +291,28 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
                                 {rough.tolerance}};
   const auto better = search(fine);
   return better ? std::optional(withinWay(inWorld(*better, a, b, fine.unit, unscale))) : std::nullopt;
+}
+
+Nearing nearingOf(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, double clearance,
+                  double slack) {
+  const int exponent = exponentOf(a, b, clearance);
+  if (clearance <= slack) return Nearing::pressed;
+  if (std::abs(exponent) > 900) return Nearing::open;
+  const double scale = std::ldexp(1.0, -exponent);
+  const Point<DoubleDouble> unit = normalised(direction);
+  // Then they move apart: corners and the clearance are at most 2.
+  constexpr double kEnd = 8;
+  const Pair<double> rough{
+      relative<double>(a, a[0], scale), relative<double>(b, a[0], scale), rounded(unit), scale * clearance, kEnd, 0};
+  const Nearing found = nearingOf(rough, scale * slack);
+  if (found != Nearing::open) return found;
+  const Pair<DoubleDouble> fine{relative<DoubleDouble>(a, a[0], scale),
+                                relative<DoubleDouble>(b, a[0], scale),
+                                unit,
+                                {rough.clearance},
+                                {kEnd},
+                                {}};
+  return nearingOf(fine, scale * slack);
 }
 
 bool certainlyWithin(const exact::Triangle& a, const exact::Triangle& b, const Vector& displacement, double clearance) {

@@ -30,4 +30,14 @@ struct Approach {
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
                                  const Vector& unit, double clearance, double distance, double tolerance);
 
+/// How exact::blocksWithin decides, as far as double-doubles tell.
+enum class Nearing {
+  yes,      ///< the triangles block
+  no,       ///< they do not
+  pressed,  ///< they are no farther apart than `slack` at the start: what exact::blocks says
+  open
+};
+Nearing nearingOf(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, double clearance,
+                  double slack);
+
 }  // namespace radar::cpu

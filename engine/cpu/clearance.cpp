@@ -87,9 +87,11 @@ std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pa
 void ClearanceContact::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
   if (isBefore(name)) return;
   const auto found = approachOf(pair);
-  if (!found || (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance))) return;
-  lo_ = std::min(lo_, found->lo);
+  if (!found) return;
   Near near{name, *found, found->lo};
+  const bool matters = best_.empty() || near.lo < std::min(lo_, best_[0].lo) || near.precedes(best_[0]);
+  if (!matters || (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance))) return;
+  lo_ = std::min(lo_, near.lo);
   if (best_.empty()) {
     best_.push_back(near);
   } else {
@@ -97,9 +99,11 @@ void ClearanceContact::consider(const exact::PairName& name, const exact::Placed
     if (!near.precedes(best_[0])) return;
     best_[0] = near;
   }
-  decided_ = query_.anyHit && near.isCertain();
+  if (near.isCertain() && !std::isnan(near.approach.atLo.normal[0])) across_ = near.approach.atLo.normal;
   atStart_ = near.approach.hi == 0;
-  first_ = name;
+  // What is within the clearance at the start is named by NearestAtStart.
+  decided_ = near.isCertain() && (query_.anyHit || (atStart_ && query_.hits == 1));
+  first_ = {name.object, 0, 0};
   // A later pair may have a bracket that begins before this one's, which then widens that of the answer.
   latest_ = std::min(latest_, near.approach.hi + (motion_->isStep ? 0 : tolerance_));
 }
@@ -157,22 +161,16 @@ std::vector<Result> ClearanceContact::nearest() const {
   return results;
 }
 
-void NearestAtStart::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
+void NearestAtStart::consider(const exact::PairName& name, const exact::PlacedPair& pair) {
   if (isBefore(name)) return;
   const Separation found = separationOf(pair.a, pair.b);
   const bool isNearer = found.distance < nearest_.distance || (found.distance == nearest_.distance && name < name_);
-  if (!isNearer || found.distance > reach_) return;
+  if (!isNearer) return;
   if (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance)) return;
   nearest_ = found;
-  name_ = first_ = name;
-  atStart_ = found.distance == 0;
-  decided_ = found.distance < 0.5 * reach_;
-}
-
-bool NearestAtStart::narrow() {
-  if (!std::exchange(decided_, false)) return false;
-  reach_ = nearest_.distance;
-  return true;
+  name_ = name;
+  // Another one's distance may be rounded down to the same.
+  reach_ = (1 + 0x1p-20) * found.distance;
 }
 
 void NearestAtStart::describe(Result& result) const {

@@ -54,22 +54,22 @@ class ClearanceContact final : public PairVisitor {
   std::vector<Near> open_;     // of objects that rounding leaves open
 };
 
-/// Of what is within a query's clearance at the start, finds the nearest pair, and of equals the least. It passes over
-/// the pairs within `reach`, again as long as it can narrow that: those within a large clearance may be very many.
-class NearestAtStart final : public PairVisitor {
+/// Of what is within a query's clearance at the start, finds the nearest pair, and of equals the least.
+class NearestAtStart {
  public:
   /// `query` must outlive this.
-  explicit NearestAtStart(const Query& query) : PairVisitor(0), query_(query), reach_(query.clearance) {}
+  explicit NearestAtStart(const Query& query) : query_(query), reach_((1 + 0x1p-20) * query.clearance) {}
 
   /// `motion`: the query's past the next object, which must stay in place meanwhile.
   void beginObject(const PairRule& rule, const Motion& motion) {
     rule_ = rule;
     motion_ = &motion;
   }
-  void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
-  /// Whether the last search past an object has ended early, to go on within less reach.
-  bool narrow();
+  void consider(const exact::PairName& name, const exact::PlacedPair& pair);
+  /// No pair at a greater distance, world units, matters.
   double reach() const { return reach_; }
+  /// Whether neither `least` nor a pair after it matters, because a lesser one touches.
+  bool isBefore(const exact::PairName& least) const { return nearest_.distance == 0 && name_ < least; }
   /// Sets ids, features, point, normal and gap.
   void describe(Result& result) const;
 

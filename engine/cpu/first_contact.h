@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "cpu/approach.h"
 #include "cpu/leaf_test.h"
 #include "cpu/view.h"
 #include "exact/blocking.h"
@@ -30,6 +31,9 @@ class PairVisitor {
   double latest() const { return latest_; }
   /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
   bool isBefore(const exact::PairName& least) const { return atStart_ && first_ < least; }
+  /// With a clearance: across the gap of a pair found so far, along which others probably are farther apart; 0 if none
+  /// is known.
+  const Vector& across() const { return across_; }
 
  protected:
   explicit PairVisitor(double latest) : latest_(latest) {}
@@ -39,6 +43,7 @@ class PairVisitor {
   bool decided_ = false;
   bool atStart_ = false;   // some pair meets at the start
   exact::PairName first_;  // the least of these
+  Vector across_{};
 };
 
 /// How the pairs of a sensor and an object are judged (exact/blocking.h).
@@ -51,6 +56,10 @@ struct PairRule {
   }
   /// With a clearance.
   bool blocks(const exact::PlacedPair& pair, const Motion& motion, double clearance) const {
+    const Nearing nearing =
+        motion.stands ? Nearing::open : nearingOf(pair.a, pair.b, motion.direction, clearance, slack);
+    if (nearing == Nearing::pressed) return blocks(pair, motion);
+    if (nearing != Nearing::open) return nearing == Nearing::yes;
     return exact::blocksWithin(pair.a, pair.b, exact::courseOf(motion), clearance, slack, mirrored);
   }
   bool arePressed(const exact::PlacedPair& pair, const Motion& motion) const {

@@ -13,10 +13,6 @@ constexpr float kSimilar = 4;
 // Floats are used if they round positions by at most this fraction of a mean triangle edge.
 constexpr double kFloatShare = 0.125;
 
-bool isLeaf(const gpu::MeshNode& node) {
-  return (node.link & gpu::kLinkLeaf) != 0;
-}
-
 uint32_t trianglesOf(const gpu::MeshNode& leaf) {
   return (leaf.link & gpu::kLinkPair) != 0 ? 2 : 1;
 }
@@ -89,6 +85,46 @@ class Opener {
 
   const std::vector<gpu::MeshNode>&nodesA_, &nodesB_;
   float scale_;  // of A's nodes in B's frame
+};
+
+/// With a clearance: tells nodes that stay farther apart than it until the latest time that matters, by their extents
+/// across the gap of a pair found so far. Slabs along the meshes' axes let pass what is up to 1.7 clearances away.
+class GapTest {
+ public:
+  explicit GapTest(const MeshPair& pair) : pair_(pair) {}
+
+  void update(const PairVisitor& visitor) {
+    const PairMotion& motion = pair_.motion;
+    const Vector& n = visitor.across();
+    isKnown_ = motion.clearance > 0 && n != Vector{};
+    if (!isKnown_) return;
+    // The height of A above B, but for their nodes' places, falls at a constant rate or does not fall.
+    const double way = motion.timeOf(visitor.latest()) * dot(n, motion.travel);
+    const MeshPlacement &a = pair_.sensor.placement, &b = pair_.other.placement;
+    for (int k = 0; k < 3; ++k) {
+      alongA_[k] = n[0] * a.linear[0][k] + n[1] * a.linear[1][k] + n[2] * a.linear[2][k];
+      alongB_[k] = n[0] * b.linear[0][k] + n[1] * b.linear[1][k] + n[2] * b.linear[2][k];
+    }
+    // PairMotion::rounding holds 32 ulp of all that is summed here and below.
+    height_ = dot(n, motion.gap) + std::min(way, 0.0) - (1 + 0x1p-20) * std::sqrt(dot(n, n)) * motion.clearance -
+              2 * reachAlong(n, motion.rounding);
+  }
+
+  bool keepApart(const gpu::MeshNode& a, const gpu::MeshNode& b) const {
+    if (!isKnown_) return false;
+    double height = height_;
+    for (int k = 0; k < 3; ++k) {
+      height += alongA_[k] * a.centre[k] - std::abs(alongA_[k]) * a.halfExtent[k];
+      height -= alongB_[k] * b.centre[k] + std::abs(alongB_[k]) * b.halfExtent[k];
+    }
+    return height > 0;
+  }
+
+ private:
+  const MeshPair& pair_;
+  bool isKnown_ = false;
+  Vector alongA_{}, alongB_{};
+  double height_ = 0;
 };
 
 constexpr int32_t kNever = 0x7f800000;  // the bits of infinity
@@ -201,6 +237,8 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
   const Opener opener(pair);
   const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(visitor.latest())); };
   float latest = latestNow();
+  GapTest gap(pair);
+  gap.update(visitor);
 
   open_.resize(3 * (size_t{treeA.depth} + treeB.depth) + 4);
   open_[0] = {static_cast<float>((1 - 0x1p-22) * near), 0, 0};
@@ -210,9 +248,11 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
     if (pairNow.near > latest) continue;
     if (visitor.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
     const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
+    if (gap.keepApart(a, b)) continue;
     if (isLeaf(a) && isLeaf(b)) {
       meetLeaves(pair, leaves, a, b, pairNow.near, visitor, pairs);
       latest = latestNow();
+      gap.update(visitor);
       continue;
     }
     const Opener::Parts parts = opener.open(pairNow.a, pairNow.b);

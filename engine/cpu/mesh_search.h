@@ -13,6 +13,7 @@ namespace radar::cpu {
 struct PlacedMesh {
   const Mesh& mesh;
   const Transform& pose;
+  const MeshPlacement& placement;  ///< of the same pose
 };
 
 /// A sensor in motion, an object, and each mesh in the other's frame.

@@ -131,20 +131,19 @@ std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::
 void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
                                 std::span<const ObjectId> skipped, Result& first, Listed* lists) {
   if (first.status != Status::overlap) return;
-  Query still = stillAt(query);
-  const Task task(still, scene);
+  const Query still = stillAt(query);
+  const Task task(query, scene);
   NearestAtStart nearest(query);
+  const PlacedMesh sensor{task.sensor, query.worldFromMesh, task.placement};
   const auto consider = [&](ObjectId id, NearestAtStart& finder) {
-    const PairRule rule = Task(query, scene).ruleFor(id);
+    const Object& object = scene.objects[id].object;
+    const Mesh& mesh = scene.meshes[object.mesh];
     const Motion motion = motionPast(query, scene, id);
-    finder.beginObject(rule, motion);
-    do {
-      still.clearance = finder.reach();
-      searchObject(task, id, rule, motionPast(still, scene, id), finder);
-    } while (finder.narrow());
+    finder.beginObject(task.ruleFor(id), motion);
+    nearest_.run(sensor, {mesh, object.worldFromMesh, MeshPlacement(mesh, object.worldFromMesh)}, id, finder, pairs_);
   };
   walk(
-      still, task.motion, scene, tree, [](double near) { return near <= 0; },
+      still, Motion(Vector{}, {}), scene, tree, [](double near) { return near <= 0; },
       [&](ObjectId id) {
         if (!std::binary_search(skipped.begin(), skipped.end(), id)) consider(id, nearest);
       });
@@ -153,7 +152,6 @@ void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, co
     Result& hit = lists->hits[i];
     if (hit.status != Status::overlap) continue;
     NearestAtStart own(query);
-    still.clearance = query.clearance;
     consider(hit.object, own);
     own.describe(hit);
   }
@@ -188,8 +186,12 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& ru
   const RelativePlacement fromObject(MeshAxes(placement.linear), task.placement, pairMotion, 1);
   narrow(times, fromObject, rootB, rootA);
   if (times.empty()) return;
-  const MeshPair pair{
-      {task.sensor, task.query.worldFromMesh}, {mesh, object.worldFromMesh}, id, pairMotion, fromSensor, fromObject};
+  const MeshPair pair{{task.sensor, task.query.worldFromMesh, task.placement},
+                      {mesh, object.worldFromMesh, placement},
+                      id,
+                      pairMotion,
+                      fromSensor,
+                      fromObject};
   meshes_.run(pair, times.from, visitor, pairs_);
 }
 

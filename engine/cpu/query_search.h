@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cpu/mesh_search.h"
+#include "cpu/nearest_search.h"
 
 namespace radar::cpu {
 
@@ -35,6 +36,7 @@ class QuerySearch {
 
   std::optional<Motion> past_;  // the sensor's motion past the current object, in a step
   MeshSearch meshes_;
+  NearestSearch nearest_;
   uint64_t pairs_ = 0;
 };
 

@@ -11,6 +11,10 @@ namespace radar {
 
 struct Mesh;
 
+inline bool isLeaf(const gpu::MeshNode& node) {
+  return (node.link & gpu::kLinkLeaf) != 0;
+}
+
 /// In normalised local coordinates (Mesh::local, Mesh::unit).
 struct MeshTree {
   std::vector<gpu::MeshNode> nodes;  ///< links are relative to the mesh's first node, or to its start in `order`

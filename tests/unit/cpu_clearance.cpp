@@ -343,3 +343,18 @@ TEST_CASE("slivers up to 1e13 times as long as wide are decided, though doubles 
     if (stretch < 1e12) CHECK(wide == 0);
   }
 }
+
+TEST_CASE("a clearance larger than the shapes opens few pairs of triangles, before a gap and within one") {
+  Scene scene;
+  const MeshId shape = add(scene, tools::makeUvSphere(20, 20));
+  for (int i = 0; i < 4; ++i) scene.addObject({shape, at(3.0 * (i % 2), 3.0 * (i / 2), 0)});
+  Query query{.mesh = shape, .worldFromMesh = at(-30, -30.1, -30.2), .direction = {1, 1, 1}, .distance = 300};
+  query.clearance = 12;
+  const auto move = [&] { return CpuSweeper(scene, 1).run({&query, 1}); };
+  CHECK(move().results[0].status == Status::hit);
+  const uint64_t all = 4 * scene.mesh(shape).triangleCount() * scene.mesh(shape).triangleCount();
+  CHECK(move().stats.pairs < all / 100);
+  query.clearance = 120;
+  CHECK(move().results[0].status == Status::overlap);
+  CHECK(move().stats.pairs < all / 100);
+}

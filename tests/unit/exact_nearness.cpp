@@ -1,6 +1,8 @@
 // Compares which pairs block a motion with a clearance with the definition, in integers and by another method: the
 // least distance is that of the point nearest to the origin among all b - a - s d, which some corners of that set span.
 #include "exact/nearness.h"
+
+#include "cpu/approach.h"
 #include "exact_oracle.h"
 #include "soups.h"
 #include "support/catch.h"
@@ -98,7 +100,7 @@ bool blocks(const Ratio& start, const Ratio& least, const Integer& clearance, co
 TEST_CASE(
     "a pair blocks at a distance if it comes nearer than the clearance and than it starts, by more than the slack") {
   Random random(63);
-  int blocking = 0, passing = 0, within = 0, constant = 0;
+  int blocking = 0, passing = 0, within = 0, constant = 0, told[4] = {};
   for (int i = 0; i < 6000; ++i) {
     INFO("pair " << i);
     const int side = random.integer(1, 4);
@@ -132,13 +134,23 @@ TEST_CASE(
     const bool touches = start.num <= Integer(slack * slack) * start.den || clearance <= slack;
     const bool truth = touches ? radar::exact::blocks(a, b, course, slack, {}) : blocks(start, least, clearance, slack);
     REQUIRE(found == truth);
+    const auto roughly = radar::cpu::nearingOf(scaledA, scaledB, direction, clearance * scale, slack * scale);
+    if (roughly == radar::cpu::Nearing::pressed) {
+      REQUIRE(touches);
+    } else if (roughly != radar::cpu::Nearing::open) {
+      REQUIRE((!touches && (roughly == radar::cpu::Nearing::yes) == truth));
+    }
+    ++told[static_cast<size_t>(roughly)];
     ++(truth ? blocking : passing);
     within += !touches && start.num <= Integer(clearance * clearance) * start.den;
     constant += !touches && !isLess(least, start);
   }
-  CAPTURE(blocking, passing, within, constant);
+  CAPTURE(blocking, passing, within, constant, told[0], told[1], told[2], told[3]);
   CHECK(blocking > 500);
   CHECK(passing > 500);
   CHECK(within > 300);
   CHECK(constant > 300);
+  // Lattices are hard: triangles touch, and slide along each other.
+  for (const int times : told) CHECK(times > 300);
+  CHECK(told[3] < 2000);
 }

@@ -37,7 +37,7 @@ TEST_CASE("the parts of an engine are swept out of it with the CPU's answers, an
   REQUIRE(warnings.empty());
   Scene scene;
   for (const tools::MeshData& mesh : assembly.meshes) scene.addMesh(mesh.positions, mesh.indices);
-  for (const tools::Assembly::Part& part : assembly.parts) scene.addObject({part.mesh, part.fileFromMesh});
+  for (const tools::Assembly::Part& part : assembly.parts) scene.addObject({part.mesh, part.fileFromNode});
   REQUIRE(scene.objectLimit() == 67);
 
   std::vector<Query> queries = disassembly(scene);

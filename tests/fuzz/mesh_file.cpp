@@ -56,9 +56,11 @@ void run(std::string_view input) {
   if (name == "a.gltf") return;
   // The parts of an assembly have the same triangles, since no node of the other formats is moved.
   const Assembly assembly = tools::readAssembly(file, warnings);
-  const auto isMoved = [](const Assembly::Part& part) { return part.fileFromMesh != Transform{}; };
-  // Bases are those of the parts.
-  if (mesh.base != std::array<double, 3>{} || std::ranges::any_of(assembly.parts, isMoved)) return;
+  const auto isMoved = [](const Assembly::Part& part) { return part.fileFromNode != Transform{}; };
+  const auto isBased = [](const tools::FileMesh& of) { return of.base != std::array<double, 3>{}; };
+  if (isBased(mesh) || std::ranges::any_of(assembly.meshes, isBased) || std::ranges::any_of(assembly.parts, isMoved)) {
+    return;
+  }
   std::vector<float> whole, parts;
   appendCorners(mesh, whole);
   for (const Assembly::Part& part : assembly.parts) {

@@ -29,7 +29,7 @@ set(baselines_may workloads)
 set(measure_may radar gpu scene commit child workloads import batch baselines)
 set(cyber_radar_may radar commit workloads view import answer batch baselines measure)
 set(mpi_may commit batch measure cyber_radar)
-set(python_may commit workloads view import answer)
+set(python_may radar commit workloads view import answer)
 
 set(wrong "")
 foreach(part engine tools)

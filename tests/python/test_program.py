@@ -99,6 +99,47 @@ def test_an_assembly_has_the_answers_of_the_program(tmp_path):
     assert len(casts.hits.object) > 100 and len(casts.overlapping.object) > 100
 
 
+def test_a_file_far_from_the_origin_has_the_answers_of_the_program(tmp_path):
+    rng = np.random.default_rng(3)
+    offset = np.array([512340.678, 4512350.123, 296.25])
+    for name, by in (("far.obj", offset), ("near.obj", np.zeros(3))):
+        lines = [f"v {x} {y} {z}" for x, y, z in (box(3, 4, 5) + by).tolist()] + [
+            f"f {a} {b} {c}" for a, b, c in FACES + 1
+        ]
+        (tmp_path / name).write_text("\n".join(lines))
+    starts = random_poses(rng, 500, 30)
+    starts[:, :3, 3] += offset
+    turned = random_poses(rng, 500, 9)
+    turned[:, :3, 3] += offset - turned[:, :3, :3] @ offset
+    sensors = np.concatenate([starts, turned])
+    meshes = np.repeat([1, 0], 500)
+    ways = (
+        offset - sensors[:, :3, 3] - np.where(meshes[:, None] == 0, sensors[:, :3, :3] @ offset, 0) + 40 * np.eye(3)[0]
+    )
+    queries = {
+        "format": "cyber-radar-queries-1",
+        "meshes": ["far.obj", "near.obj"],
+        "scenes": [{"assembly": "far.obj"}, {"instances": [[0], instance(0, turned[0])]}],
+        "queries": [
+            {"id": f"{scene}/{i}", "scene": scene, "sensor": instance(int(meshes[i]), sensors[i]), "dir": ways[i].tolist(),
+             "D": 60}
+            for scene in range(2) for i in range(1000)
+        ],
+    }  # fmt: skip
+    answers = ask_program(tmp_path, queries)
+    scenes = [cyber_radar.Scene(), cyber_radar.Scene()]
+    scenes[0].load_assembly(tmp_path / "far.obj")
+    for scene in scenes:
+        far, near = scene.load_mesh(tmp_path / "far.obj"), scene.load_mesh(tmp_path / "near.obj")
+    scenes[1].add(far, np.stack([np.eye(4), turned[0]]))
+    assert scenes[1].cast(0, None, [0, 0, 1], mode="reference").distance == 0
+    for number, scene in enumerate(scenes):
+        loaded = np.array(scene.meshes)[-2:]
+        casts = scene.cast(loaded[meshes], sensors, ways, distances=60, mode="reference")
+        assert (column(answers[1000 * number : 1000 * (number + 1)], "t", np.inf) == casts.distance).all()
+        assert 0.2 < casts.touches.mean() < 0.999
+
+
 def test_a_mesh_file_that_is_broken_is_refused_with_the_programs_words(tmp_path):
     (tmp_path / "a.ply").write_text("ply\nformat ascii 1.0\n")
     with pytest.raises(ValueError, match="a.ply: .*header"):

@@ -124,8 +124,9 @@ def test_other_threads_run_while_a_mesh_is_added_deformed_or_read(tmp_path):
     engine = cyber_radar.Scene()._engine
     vertices = np.float32(np.random.default_rng(14).normal(size=(3000, 3)))
     faces = np.arange(3000, dtype=np.uint32).reshape(-1, 3)
-    until_another_thread_runs_within(lambda: engine.add_mesh(vertices, faces))
-    until_another_thread_runs_within(lambda: engine.set_vertices(0, vertices))
+    until_another_thread_runs_within(lambda: engine.add_mesh(vertices, faces, np.zeros(3)))
+    until_another_thread_runs_within(lambda: engine.set_vertices(0, vertices, np.zeros(3)))
+    until_another_thread_runs_within(lambda: cyber_radar._engine.float_vertices(np.float64(vertices), faces))
     lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a} {b} {c}" for a, b, c in faces + 1]
     (tmp_path / "a.obj").write_text("\n".join(lines))
     until_another_thread_runs_within(lambda: cyber_radar._engine.read_mesh(tmp_path / "a.obj"))

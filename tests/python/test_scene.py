@@ -86,8 +86,9 @@ def test_meshes_are_kept_as_given_and_rounding_is_said():
     scene.add_mesh([[0, 0, 0], [0.5, 0, 0], [0, 1, 0]], [[0, 1, 2]])  # float32 holds these
     scene.add_mesh([[0, 0, 0], [0.1, 0, 0], [0, 1, 0]], [[0, 1, 2]])  # a billionth off, which is nothing to a mesh of 1
     scene.remove_mesh(2)
-    with pytest.warns(cyber_radar.RoundingWarning, match=r"rounded to float32, by up to 0\.12") as caught:
-        scene.add_mesh([[4512350.123, 0, 0], [4512351, 0, 0], [4512350, 1, 0]], [[0, 1, 2]])
+    stray = [[4512350.123, 0, 0], [4512351, 0, 0], [4512350, 1, 0], [0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    with pytest.warns(cyber_radar.RoundingWarning, match=r"change the mesh's numbers by up to 0\.12") as caught:
+        scene.add_mesh(stray, [[0, 1, 2], [0, 2, 1], [3, 4, 5]])  # no base suits both
     assert caught[0].filename == __file__
     assert scene.meshes == [0, 1, 2]
     scene.remove_mesh(1)
@@ -95,6 +96,57 @@ def test_meshes_are_kept_as_given_and_rounding_is_said():
     scene.add(2)
     with pytest.raises(ValueError, match="mesh: expected a mesh that no object uses, got 2"):
         scene.remove_mesh(2)
+
+
+def far_and_near(vertices: np.ndarray, offset: np.ndarray) -> tuple[cyber_radar.Scene, cyber_radar.Scene]:
+    """Two objects of a mesh, the second turned and stretched, and a probe, mesh 1, in the frame of the first; in one
+    scene the mesh's numbers are far from the origin, and the poses bring it back."""
+    turned = np.array([[0, -2, 0, 30], [1, 0, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1.0]])
+    scenes = cyber_radar.Scene(), cyber_radar.Scene()
+    for scene, by in zip(scenes, (offset, 0 * offset)):
+        mesh = scene.add_mesh(vertices + by, FACES)
+        scene.add(mesh, np.stack([at(-by), turned @ at(-by)]))
+        scene.add_mesh(box(1, 1, 1), FACES)
+    return scenes
+
+
+def test_a_mesh_far_from_the_origin_loses_nothing():
+    vertices, offset = box(8, 4, 2) + 2.0**-12, np.array([512340.0, 4512350.0, -296.0])
+    rng = np.random.default_rng(5)
+    poses = random_poses(rng, 300, 40)
+    ways = rng.normal(size=(300, 3)) * 3 - 1.5 * poses[:, :3, 3]
+    far, near = far_and_near(vertices, offset)
+    assert far.mesh(0)[0].dtype == np.float64 and (far.mesh(0)[0] == vertices + offset).all()
+    held = far.objects().transforms
+    assert (held[0] == at(-offset)).all()
+
+    def agree(*, up: float) -> None:
+        """`up`: where the mesh is in the near scene."""
+        for mode in ("reference", "contact"):
+            one, other = (scene.cast(1, poses, ways, mode=mode) for scene in (far, near))
+            assert same_answers(one, other) and other.touches.sum() > 100
+            one = far.cast(0, poses @ at(-offset - [0, 0, up]), ways, mode=mode)
+            other = near.cast(0, poses @ at([0, 0, -up]), ways, mode=mode)
+            # These turned poses are themselves rounded to doubles of 4,512,350.
+            np.testing.assert_allclose(one.distance, other.distance, rtol=0, atol=1e-7)
+            assert other.touches.sum() > 100
+
+    agree(up=0)
+    for scene in (pickle.loads(pickle.dumps(far)), copy.deepcopy(far)):
+        assert (scene.objects().transforms == held).all() and (scene.mesh(0)[0] == vertices + offset).all()
+        assert same_answers(scene.cast(1, poses, ways, mode="reference"), far.cast(1, poses, ways, mode="reference"))
+    up = np.array([0, 0, 2.0**20])
+    for scene, by in ((far, offset), (near, 0 * offset)):  # about other bases
+        scene.set_vertices(0, box(8, 4, 6) + 2.0**-12 + by + up)
+        scene.set_transforms(0, at(-by - up))
+    agree(up=2.0**20)
+    far.set_vertices(0, vertices)
+    assert far.mesh(0)[0].dtype == np.float32
+    assert (far.objects().transforms[1] == held[1]).all()
+    near.set_vertices(0, vertices)
+    for scene in (far, near):
+        scene.set_transforms([0, 1], poses[:2])
+    assert same_answers(far.cast(1, poses, ways, mode="reference"), near.cast(1, poses, ways, mode="reference"))
 
 
 def test_a_mesh_of_another_package_is_taken_as_it_is():

@@ -61,6 +61,16 @@ def test_a_page_knows_what_was_asked_and_left_out(tmp_path):
     assert numbers(whether["queries"]["any"]).tolist() == [1, 1] and whether["left"] == {}
 
 
+def test_what_is_far_from_the_origin_is_shown_where_it_is(tmp_path):
+    scene, offset = cyber_radar.Scene(), np.array([512340.0, 4512350.0, 0.0])
+    wall = scene.add_mesh(box(1, 1, 1) + offset + 2.0**-12, FACES)
+    scene.add(wall, at([3, 0, 0] - offset))
+    shown = page_data(scene.cast(wall, at(-offset), [9, 0, 0], mode="reference").show(tmp_path / "page.html"))
+    between = numbers(shown["scenes"][0]["at"]) - numbers(shown["queries"]["at"])
+    assert between.tolist() == [3, 0, 0]
+    assert np.abs(numbers(shown["queries"]["at"])).max() < 1
+
+
 def test_distances_are_ways_and_names_and_motions_are_shown(tmp_path):
     scene, cube = row()
     scene.set_motions([0], [0.0, 0, 1])
@@ -104,7 +114,9 @@ def test_a_browser_is_opened_and_notebooks_show_the_page(tmp_path, monkeypatch):
     assert page_data(pathlib.Path(file))["queries"]["count"] == 1
     cell = casts._repr_html_()
     assert cell.startswith("<iframe srcdoc=") and "<script" not in cell
-    large = scene.add_mesh(np.random.default_rng(1).normal(size=(300_000, 3)).astype("f4"), np.arange(300_000).reshape(-1, 3))
+    large = scene.add_mesh(
+        np.random.default_rng(1).normal(size=(300_000, 3)).astype("f4"), np.arange(300_000).reshape(-1, 3)
+    )
     scene.add(large, at([0.0, 0, 99]))
     assert "show() opens the page" in casts._repr_html_()
 

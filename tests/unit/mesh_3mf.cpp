@@ -106,9 +106,9 @@ TEST_CASE("build items and components of a 3MF file place its objects, whose mes
   REQUIRE(assembly.parts.size() == 3);
   CHECK(assembly.meshes.size() == 1);
   CHECK(assembly.parts[0].name == "lid");
-  CHECK(assembly.parts[0].fileFromMesh.m == std::array<double, 12>{1, 0, 0, 100, 0, 1, 0, 0, 0, 0, 1, 0});
-  CHECK(assembly.parts[1].fileFromMesh.m == std::array<double, 12>{0, -2, 0, 110, 2, 0, 0, 20, 0, 0, 2, 30});
-  CHECK(assembly.parts[2].fileFromMesh == radar::Transform{});
+  CHECK(assembly.parts[0].fileFromNode.m == std::array<double, 12>{1, 0, 0, 100, 0, 1, 0, 0, 0, 0, 1, 0});
+  CHECK(assembly.parts[1].fileFromNode.m == std::array<double, 12>{0, -2, 0, 110, 2, 0, 0, 20, 0, 0, 2, 30});
+  CHECK(assembly.parts[2].fileFromNode == radar::Transform{});
 }
 
 TEST_CASE("a 3MF file that is broken, or needs what is not read, is refused by name") {

@@ -52,7 +52,7 @@ TEST_CASE("a mesh far from the origin is about a base, which poses give back") {
   CHECK(turned[1] == Approx(0.678).epsilon(0).margin(1e-6));
   CHECK(turned[2] == Approx(0.25).epsilon(0).margin(1e-6));
   const Assembly assembly = readAssembly((folder.path() / "wall.obj").string(), warnings);
-  CHECK(radar::transformPoint(assembly.parts[0].fileFromMesh, assembly.meshes[0].positions.data()) == corner(wall, 0));
+  CHECK(corner(assembly.meshes[0], 0, assembly.parts[0].fileFromNode) == corner(wall, 0));
 }
 
 TEST_CASE("numbers that floats round by less than a millionth of the mesh's size are the nearest floats") {

@@ -95,8 +95,8 @@ TEST_CASE("an assembly has a part per node with triangles, named and placed by i
   REQUIRE(assembly.meshes.size() == 2);
   CHECK((assembly.parts[0].name == "lid" && assembly.parts[1].name == "lid" && assembly.parts[2].name == "3"));
   CHECK((assembly.parts[0].mesh == 0 && assembly.parts[1].mesh == 0 && assembly.parts[2].mesh == 1));
-  CHECK(assembly.parts[0].fileFromMesh.m == std::array<double, 12>{2, 0, 0, 10, 0, 3, 0, 0, 0, 0, 4, 0});
-  CHECK(assembly.parts[1].fileFromMesh.m == std::array<double, 12>{1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 7});
+  CHECK(assembly.parts[0].fileFromNode.m == std::array<double, 12>{2, 0, 0, 10, 0, 3, 0, 0, 0, 0, 4, 0});
+  CHECK(assembly.parts[1].fileFromNode.m == std::array<double, 12>{1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 7});
   CHECK(corners(assembly.meshes[0]) == std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
 
   CHECK(corners(readWhole(file + "#1")) == corners(assembly.meshes[0]));
@@ -202,9 +202,9 @@ TEST_CASE("quarter turns in a glTF file are exact, though floats cannot hold the
   std::vector<std::string> warnings;
   const Assembly assembly = readAssembly(file, warnings);
   REQUIRE(assembly.parts.size() == 3);
-  CHECK(assembly.parts[0].fileFromMesh.m == std::array<double, 12>{0, 0, -1, 0.1, 1, 0, 0, 0.3, 0, -1, 0, 0});
-  CHECK(assembly.parts[1].fileFromMesh.m == std::array<double, 12>{0, -3, 0, 0.1, 0, 0, 4, 0, -2, 0, 0, 0});
-  CHECK(assembly.parts[2].fileFromMesh.m == std::array<double, 12>{0.1, 0, 0, 1, 0, 0.2, 0, 2, 0, 0, 0.3, 0.7});
+  CHECK(assembly.parts[0].fileFromNode.m == std::array<double, 12>{0, 0, -1, 0.1, 1, 0, 0, 0.3, 0, -1, 0, 0});
+  CHECK(assembly.parts[1].fileFromNode.m == std::array<double, 12>{0, -3, 0, 0.1, 0, 0, 4, 0, -2, 0, 0, 0});
+  CHECK(assembly.parts[2].fileFromNode.m == std::array<double, 12>{0.1, 0, 0, 1, 0, 0.2, 0, 2, 0, 0, 0.3, 0.7});
 }
 
 TEST_CASE("triangle strips of a PLY file turn as their first triangles, and what only leads on is left out") {

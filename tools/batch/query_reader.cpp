@@ -224,11 +224,12 @@ void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
     const auto [first, isNew] = firstMesh_.emplace(&parts, static_cast<uint32_t>(workload_.meshes.size()));
     if (isNew) workload_.meshes.insert(workload_.meshes.end(), parts.meshes.begin(), parts.meshes.end());
     for (const Assembly::Part& part : parts.parts) {
-      spec.instances.push_back({first->second + part.mesh, part.fileFromMesh});
+      const Transform fileFromMesh = aboutBase(part.fileFromNode, parts.meshes[part.mesh].base);
+      spec.instances.push_back({first->second + part.mesh, fileFromMesh});
       spec.names.push_back(part.name);
       fingerprint_.add(part.name);
       fingerprint_.add(std::array{part.mesh});
-      fingerprint_.add(part.fileFromMesh.m);
+      fingerprint_.add(fileFromMesh.m);
     }
   } else {
     scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });

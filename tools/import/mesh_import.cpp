@@ -262,8 +262,7 @@ Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string
       assembly.meshes.push_back(std::move(mesh));
     }
     if (std::string wrong = validate(node.fileFromNode); !wrong.empty()) throw InputError(name, placeOf(node), wrong);
-    const FileMesh& mesh = assembly.meshes[found->second];
-    assembly.parts.push_back({node.name, found->second, aboutBase(node.fileFromNode, mesh.base)});
+    assembly.parts.push_back({node.name, found->second, node.fileFromNode});
   }
   requireTriangles(!assembly.parts.empty(), collector);
   warnOfDropped(collector, warnings);

@@ -23,8 +23,7 @@ struct Assembly {
   struct Part {
     std::string name;  ///< the node's; others may have the same
     uint32_t mesh = 0;
-    /// The transforms of the node and those above it, multiplied in double precision, and the mesh's base.
-    Transform fileFromMesh;
+    Transform fileFromNode;  ///< the transforms of the node and those above it, multiplied in double precision
   };
   std::vector<FileMesh> meshes;  ///< in the frames of their nodes; nodes that place the same meshes share one
   std::vector<Part> parts;

@@ -76,8 +76,8 @@ void setWay(Query& query, const std::array<double, 3>& way, AnswerMode mode, boo
 class Reader {
  public:
   /// Begins with query `first`. `mayRoundUp`: see setWay; of queries with a clearance.
-  Reader(const BatchInput& input, size_t first, bool mayRoundUp)
-      : input_(input), mayRoundUp_(mayRoundUp), index_(input.shape.size()) {
+  Reader(const BasedScene& scene, const BatchInput& input, size_t first, bool mayRoundUp)
+      : scene_(scene), input_(input), mayRoundUp_(mayRoundUp), index_(input.shape.size()) {
     for (size_t d = index_.size(); d-- > 0; first /= input.shape[d]) {
       index_[d] = static_cast<ptrdiff_t>(first % input.shape[d]);
     }
@@ -101,6 +101,7 @@ class Reader {
     }
   }
 
+  const BasedScene& scene_;
   const BatchInput& input_;
   bool mayRoundUp_;
   std::vector<ptrdiff_t> index_;
@@ -126,6 +127,7 @@ void Reader::readOptions(Query& query) const {
 void Reader::next(Query& query) {
   read(input_.meshes, &query.mesh, 1);
   read(input_.poses, query.worldFromMesh.m.data(), 12);
+  query.worldFromMesh = scene_.placed(query.mesh, query.worldFromMesh);
   read(input_.masks, &query.mask, 1);
   std::array<double, 3> way;
   read(input_.displacements, way.data(), 3);
@@ -259,7 +261,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
     const size_t end = std::min(first + chunk, count);
     queries.resize(end - first, input.options);
     inParts(end - first, [&](size_t from, size_t to) {
-      Reader reader(input, first + from, mayRoundUp);
+      Reader reader(scene.based(), input, first + from, mayRoundUp);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
     Answers answers = answer(scene, queries, input.mode);

@@ -41,20 +41,20 @@ tools::Answerer& CastingScene::answerer() {
   leaveForked();
   if (!answerer_) {
     process_ = getpid();
-    answerer_ = std::make_unique<tools::Answerer>(scene_, options_);
+    answerer_ = std::make_unique<tools::Answerer>(scene(), options_);
   }
   return *answerer_;
 }
 
 bool CastingScene::moves() const {
-  for (ObjectId id = 0; id < scene_.objectLimit(); ++id) {
-    if (scene_.hasObject(id) && scene_.object(id).motion != std::array<double, 3>{}) return true;
+  for (ObjectId id = 0; id < scene().objectLimit(); ++id) {
+    if (scene().hasObject(id) && scene().object(id).motion != std::array<double, 3>{}) return true;
   }
   return false;
 }
 
-void CastingScene::edit(const std::function<void(Scene&)>& change) {
-  answerer().edit([&] { change(scene_); });
+void CastingScene::edit(const std::function<void(BasedScene&)>& change) {
+  answerer().edit([&] { change(based_); });
 }
 
 std::span<const Device> CastingScene::devices() const {

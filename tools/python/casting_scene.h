@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "answer/answerer.h"
+#include "python/based_scene.h"
 
 namespace radar::python {
 
@@ -19,11 +20,12 @@ class CastingScene {
   explicit CastingScene(tools::AnswererOptions options);
   ~CastingScene();
 
-  const Scene& scene() const { return scene_; }
+  const Scene& scene() const { return based_.scene(); }
+  const BasedScene& based() const { return based_; }
   /// Whether an object has a motion.
   bool moves() const;
   /// Every change is made here.
-  void edit(const std::function<void(Scene&)>& change);
+  void edit(const std::function<void(BasedScene&)>& change);
   /// This process's: a forked process makes its own.
   tools::Answerer& answerer();
   std::span<const Device> devices() const;
@@ -35,7 +37,7 @@ class CastingScene {
 
   tools::AnswererOptions options_;
   std::vector<std::string> losses_;
-  Scene scene_;
+  BasedScene based_;
   pid_t process_ = 0;
   std::unique_ptr<tools::Answerer> answerer_;
 };

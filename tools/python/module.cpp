@@ -1,171 +1,22 @@
 // The compiled half of the Python package: cyber_radar/_engine.pyi declares it, and the Python half checks every
 // argument before it comes here.
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "commit/commit.h"
 #include "import/mesh_import.h"
+#include "python/arrays.h"
 #include "python/batch.h"
 #include "python/page.h"
+#include "python/scene_methods.h"
 #include "view/page.h"
 #include "workloads/query_fields.h"
-
-namespace py = pybind11;
 
 namespace radar::python {
 
 namespace {
-
-template <class T>
-using Array = py::array_t<T, py::array::c_style>;
-
-template <class T>
-Array<T> arrayOf(const std::vector<T>& values, std::vector<py::ssize_t> shape) {
-  return Array<T>(std::move(shape), values.data());
-}
-
-py::tuple meshArrays(std::span<const float> positions, std::span<const uint32_t> indices) {
-  return py::make_tuple(Array<float>({py::ssize_t(positions.size() / 3), py::ssize_t(3)}, positions.data()),
-                        Array<uint32_t>({py::ssize_t(indices.size() / 3), py::ssize_t(3)}, indices.data()));
-}
-
-/// The first three rows of a 4x4 matrix.
-Transform transformFrom(const double* matrix) {
-  Transform transform;
-  std::copy(matrix, matrix + 12, transform.m.begin());
-  return transform;
-}
-
-void requireCount(const py::array& array, const char* name, size_t count) {
-  if (static_cast<size_t>(array.size()) == count) return;
-  throw py::value_error(std::string(name) + ": expected " + std::to_string(count) + " numbers, got " +
-                        std::to_string(array.size()));
-}
-
-// ------------------------------------------------------------------------------------------------------------ scenes
-
-/// The first matrix that no object may have, and why; none if all may.
-std::optional<std::pair<size_t, std::string>> firstSingular(const Array<double>& matrices) {
-  for (size_t i = 0; 16 * i < static_cast<size_t>(matrices.size()); ++i) {
-    std::string wrong = validate(transformFrom(matrices.data() + 16 * i));
-    if (!wrong.empty()) return std::pair{i, std::move(wrong)};
-  }
-  return std::nullopt;
-}
-
-std::unique_ptr<CastingScene> makeScene(std::optional<uint32_t> device, std::optional<std::vector<uint32_t>> pool,
-                                        std::optional<uint32_t> cpuBatch, uint32_t threads) {
-  return std::make_unique<CastingScene>(tools::AnswererOptions{.device = device.value_or(kNone),
-                                                               .pool = std::move(pool),
-                                                               .cpuBatch = cpuBatch.value_or(kNone),
-                                                               .threads = threads});
-}
-
-/// Works while other Python threads run, which may write to arrays: it must have copied what it reads of them.
-template <class Work>
-auto released(const Work& work) {
-  const py::gil_scoped_release release;
-  return work();
-}
-
-void edit(CastingScene& scene, const std::function<void(Scene&)>& change) {
-  released([&] { scene.edit(change); });
-}
-
-template <class T>
-std::vector<T> copyOf(const Array<T>& array) {
-  return {array.data(), array.data() + array.size()};
-}
-
-MeshId addMesh(CastingScene& scene, const Array<float>& vertices, const Array<uint32_t>& faces) {
-  MeshId mesh = kNone;
-  edit(scene, [&, positions = copyOf(vertices), indices = copyOf(faces)](Scene& to) {
-    mesh = to.addMesh(positions, indices);
-  });
-  return mesh;
-}
-
-void setVertices(CastingScene& scene, MeshId mesh, const Array<float>& vertices) {
-  edit(scene, [mesh, positions = copyOf(vertices)](Scene& to) { to.setPositions(mesh, positions); });
-}
-
-Array<int64_t> add(CastingScene& scene, const Array<uint32_t>& meshes, const Array<double>& transforms,
-                   const Array<uint32_t>& masks) {
-  const auto count = static_cast<size_t>(meshes.size());
-  requireCount(transforms, "transforms", 16 * count);
-  requireCount(masks, "masks", count);
-  std::vector<int64_t> ids;
-  scene.edit([&](Scene& to) {
-    for (size_t i = 0; i < count; ++i) {
-      ids.push_back(to.addObject({meshes.data()[i], transformFrom(transforms.data() + 16 * i), masks.data()[i]}));
-    }
-  });
-  return arrayOf(ids, {py::ssize_t(count)});
-}
-
-void setTransforms(CastingScene& scene, const Array<uint32_t>& objects, const Array<double>& transforms) {
-  requireCount(transforms, "transforms", 16 * static_cast<size_t>(objects.size()));
-  std::vector<Transform> given;
-  for (py::ssize_t i = 0; i < objects.size(); ++i) given.push_back(transformFrom(transforms.data() + 16 * i));
-  edit(scene, [&, ids = copyOf(objects)](Scene& to) { to.setTransforms(ids, given); });
-}
-
-void setMotions(CastingScene& scene, const Array<uint32_t>& objects, const Array<double>& motions) {
-  requireCount(motions, "motions", 3 * static_cast<size_t>(objects.size()));
-  scene.edit([&](Scene& to) {
-    for (py::ssize_t i = 0; i < objects.size(); ++i) {
-      const double* motion = motions.data() + 3 * i;
-      to.setMotion(objects.data()[i], {motion[0], motion[1], motion[2]});
-    }
-  });
-}
-
-void removeObjects(CastingScene& scene, const Array<uint32_t>& objects) {
-  scene.edit([&](Scene& to) {
-    for (py::ssize_t i = 0; i < objects.size(); ++i) to.removeObject(objects.data()[i]);
-  });
-}
-
-std::vector<MeshId> meshIds(const CastingScene& scene) {
-  std::vector<MeshId> ids;
-  for (MeshId id = 0; id < scene.scene().meshLimit(); ++id) {
-    if (scene.scene().hasMesh(id)) ids.push_back(id);
-  }
-  return ids;
-}
-
-Array<int64_t> objectIds(const CastingScene& scene) {
-  std::vector<int64_t> ids;
-  for (ObjectId id = 0; id < scene.scene().objectLimit(); ++id) {
-    if (scene.scene().hasObject(id)) ids.push_back(id);
-  }
-  return arrayOf(ids, {py::ssize_t(ids.size())});
-}
-
-/// Ids, meshes, transforms, masks and motions of all objects.
-py::tuple objects(const CastingScene& scene) {
-  std::vector<int64_t> ids, meshes;
-  std::vector<double> transforms, motions;
-  std::vector<uint32_t> masks;
-  for (ObjectId id = 0; id < scene.scene().objectLimit(); ++id) {
-    if (!scene.scene().hasObject(id)) continue;
-    const Object& object = scene.scene().object(id);
-    ids.push_back(id);
-    meshes.push_back(object.mesh);
-    masks.push_back(object.mask);
-    motions.insert(motions.end(), object.motion.begin(), object.motion.end());
-    transforms.insert(transforms.end(), object.worldFromMesh.m.begin(), object.worldFromMesh.m.end());
-    transforms.insert(transforms.end(), {0, 0, 0, 1});
-  }
-  const auto count = py::ssize_t(ids.size());
-  return py::make_tuple(arrayOf(ids, {count}), arrayOf(meshes, {count}), arrayOf(transforms, {count, 4, 4}),
-                        arrayOf(masks, {count}), arrayOf(motions, {count, 3}));
-}
 
 // ------------------------------------------------------------------------------------------------------------- casts
 
@@ -365,13 +216,7 @@ py::list deviceReports() {
 py::tuple readMesh(const std::filesystem::path& file) {
   std::vector<std::string> warnings;
   const tools::FileMesh mesh = released([&] { return tools::readMesh(file, warnings); });
-  py::tuple arrays = meshArrays(mesh.positions, mesh.indices);
-  if (mesh.base != std::array<double, 3>{}) {
-    std::vector<double> placed;
-    for (size_t i = 0; i < mesh.positions.size(); ++i) placed.push_back(mesh.base[i % 3] + double(mesh.positions[i]));
-    arrays = py::make_tuple(arrayOf(placed, {py::ssize_t(mesh.vertexCount()), py::ssize_t(3)}), arrays[1]);
-  }
-  return py::make_tuple(arrays, warnings);
+  return py::make_tuple(meshArrays(mesh.positions, mesh.indices, mesh.base), warnings);
 }
 
 py::tuple readAssembly(const std::filesystem::path& file) {
@@ -380,13 +225,15 @@ py::tuple readAssembly(const std::filesystem::path& file) {
   py::list meshes, names;
   std::vector<uint32_t> placed;
   std::vector<double> transforms;
-  for (const tools::MeshData& mesh : assembly.meshes) meshes.append(meshArrays(mesh.positions, mesh.indices));
+  for (const tools::FileMesh& mesh : assembly.meshes) {
+    meshes.append(meshArrays(mesh.positions, mesh.indices, mesh.base));
+  }
   for (const tools::Assembly::Part& part : assembly.parts) {
     // A file may hold a name in any encoding.
     names.append(py::reinterpret_steal<py::str>(
         PyUnicode_DecodeUTF8(part.name.data(), py::ssize_t(part.name.size()), "replace")));
     placed.push_back(part.mesh);
-    transforms.insert(transforms.end(), part.fileFromMesh.m.begin(), part.fileFromMesh.m.end());
+    transforms.insert(transforms.end(), part.fileFromNode.m.begin(), part.fileFromNode.m.end());
     transforms.insert(transforms.end(), {0, 0, 0, 1});
   }
   const auto count = py::ssize_t(placed.size());
@@ -421,6 +268,7 @@ void registerErrors(py::module_& module) {
 
 PYBIND11_MODULE(_engine, module) {
   using namespace radar::python;
+  namespace py = pybind11;
   registerErrors(module);
   module.attr("version") = std::to_string(radar::kVersionMajor) + "." + std::to_string(radar::kVersionMinor) + "." +
                            std::to_string(radar::kVersionPatch);
@@ -432,34 +280,9 @@ PYBIND11_MODULE(_engine, module) {
   module.attr("OPTIONS") = options;
   module.attr("MAX_RESOLUTION") = radar::kMaxResolution;
   module.attr("MOST_SHOWN") = radar::tools::kMostShownQueries;
-  py::class_<CastingScene>(module, "Scene")
-      .def(py::init(&makeScene), py::arg("device"), py::arg("pool"), py::arg("cpu_batch"), py::arg("threads"))
-      .def("add_mesh", &addMesh)
-      .def("remove_mesh",
-           [](CastingScene& scene, radar::MeshId mesh) { scene.edit([&](radar::Scene& in) { in.removeMesh(mesh); }); })
-      .def("mesh",
-           [](const CastingScene& scene, radar::MeshId id) {
-             const radar::MeshView mesh = scene.scene().mesh(id);
-             return meshArrays(mesh.positions, mesh.indices);
-           })
-      .def("mesh_ids", &meshIds)
-      .def("add", &add)
-      .def("set_transforms", &setTransforms)
-      .def("set_motions", &setMotions)
-      .def("set_vertices", &setVertices)
-      .def("remove", &removeObjects)
-      .def("objects", &objects)
-      .def("object_ids", &objectIds)
-      .def("device_names",
-           [](const CastingScene& scene) {
-             std::vector<std::string> names;
-             for (const radar::Device& device : scene.devices()) names.push_back(device.name());
-             return names;
-           })
-      .def("take_losses", &CastingScene::takeLosses)
-      .def("cast", &castArrays)
-      .def("page", &castsPage);
-  module.def("first_singular", &firstSingular);
+  py::class_<CastingScene> scene(module, "Scene");
+  defineScene(module, scene);
+  scene.def("cast", &castArrays).def("page", &castsPage);
   module.def("devices", &deviceReports);
   module.def("read_mesh", &readMesh);
   module.def("read_assembly", &readAssembly);

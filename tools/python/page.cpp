@@ -52,6 +52,7 @@ std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::stri
     query.id = casts.names[i];
     query.mesh = casts.meshes[i];
     std::copy_n(casts.poses + 16 * i, 12, query.worldFromMesh.m.begin());
+    query.worldFromMesh = scene.based().placed(query.mesh, query.worldFromMesh);
     std::copy_n(casts.directions + 3 * i, 3, query.direction.begin());
     query.distance = casts.distances[i];
     query.clearance = casts.clearances[i];

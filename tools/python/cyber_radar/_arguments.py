@@ -67,7 +67,7 @@ def device_choice(device: Any) -> tuple[int | None, list[int] | None]:
     return (int(numbers), None) if numbers.ndim == 0 else (None, numbers.tolist())
 
 
-def mesh_arrays(vertices: Any, faces: npt.ArrayLike | None) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
+def mesh_arrays(vertices: Any, faces: npt.ArrayLike | None) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
     """`faces` may be missing if `vertices` is a mesh of another package."""
     if isinstance(vertices, (str, bytes, os.PathLike)):
         raise ValueError(f"vertices: expected numbers of shape (N, 3), got {vertices!r}; load_mesh() reads a file")
@@ -90,23 +90,26 @@ def mesh_arrays(vertices: Any, faces: npt.ArrayLike | None) -> tuple[npt.NDArray
     return placed, corners
 
 
-def mesh_vertices(value: npt.ArrayLike) -> npt.NDArray[np.float32]:
+def mesh_vertices(value: npt.ArrayLike) -> npt.NDArray[np.float64]:
     given = reals(value, "vertices", (3,))
     if given.ndim != 2:
         raise ValueError(f"vertices: expected shape (N, 3), got shape {given.shape}")
     with np.errstate(over="ignore"):
-        rounded = given.astype(np.float32)
-    if not np.isfinite(rounded).all():
-        row = int(np.argwhere(~np.isfinite(rounded))[0][0])
+        fits = np.isfinite(given.astype(np.float32))
+    if not fits.all():
+        row = int(np.argwhere(~fits)[0][0])
         raise ValueError(f"vertices[{row}]: expected 3 finite numbers that float32 can hold, got {given[row]}")
-    error = float(np.abs(rounded - given).max(initial=0.0))
-    if error > 2.0**-20 * float(np.ptp(given, axis=0).max(initial=0.0)):
-        warn(
-            f"vertices are rounded to float32, by up to {error:.2g}, more than a millionth of the mesh's size: subtract "
-            "an offset, which the transforms add; or pass float32 to say that this is meant",
-            RoundingWarning,
-        )
-    return rounded
+    return given
+
+
+def about_base(
+    vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.uint32]
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float64]]:
+    """Vertices as floats about a base, and the base."""
+    floats, base, change = _engine.float_vertices(vertices, faces)
+    if change:
+        warn(f"floats, which vertices become, change the mesh's numbers by up to {change:.2g}", RoundingWarning)
+    return floats, base
 
 
 def refuse_one_each(ids: tuple[int, ...], casts: tuple[int, ...]) -> None:

@@ -15,13 +15,26 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 def read_mesh(file: Path) -> tuple[npt.NDArray[np.float32] | npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
-    """Reads a mesh file of any kind that assimp reads, as the program cyber-radar does.
+    """Reads a mesh file of any format that the program cyber-radar reads.
 
     "engine.glb" is the whole file as one mesh; "engine.glb#3" is node 3 of those that have triangles, in its own frame;
     "engine.glb#name" is the only node of that name.
 
-    Returns vertices (N, 3), float64 where float32 cannot hold the file's numbers, and faces (M, 3). Raises ValueError if the file is missing, broken, or has no triangle.
+    Returns vertices (N, 3), float64 where float32 cannot hold the file's numbers, and faces (M, 3). Raises ValueError if
+    the file is missing, broken, or has no triangle.
     """
-    (vertices, faces), notes = _engine.read_mesh(os.fspath(file))
+    vertices, faces, base = file_mesh(file)
+    return vertices_at(base, vertices), faces
+
+
+def file_mesh(file: Path) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32], npt.NDArray[np.float64]]:
+    """The same as vertices about a base, faces, and the base."""
+    mesh, notes = _engine.read_mesh(os.fspath(file))
     warn_of(notes, MeshFileWarning)
-    return vertices, faces
+    return mesh
+
+
+def vertices_at(
+    base: npt.NDArray[np.float64], vertices: npt.NDArray[np.float32]
+) -> npt.NDArray[np.float32] | npt.NDArray[np.float64]:
+    return base + vertices if base.any() else vertices

@@ -16,6 +16,7 @@ from . import _engine
 from ._arguments import (
     MOST_ID,
     Mode,
+    about_base,
     cast_option,
     device_choice,
     mesh_arrays,
@@ -27,7 +28,7 @@ from ._arguments import (
 )
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
 from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
-from ._files import Path, read_mesh
+from ._files import Path, file_mesh, vertices_at
 from ._show import Asked
 from ._warnings import DeviceLostWarning, MeshFileWarning, ValidationWarning, warn_of
 
@@ -95,20 +96,23 @@ class Scene:
     def add_mesh(self, vertices: Any, faces: npt.ArrayLike | None = None) -> int:
         """Adds a mesh and returns its id.
 
-        vertices: (N, 3), float32. Other numbers are rounded to float32, with a RoundingWarning if that
-            moves a vertex by more than a millionth of the mesh's size.
+        vertices: (N, 3). They become float32. Where that would move one by more than a millionth of the mesh's size, a
+            base is subtracted first, which poses of the mesh give back; a RoundingWarning if that does not suffice.
         faces: (M, 3), whole numbers: the vertices of each triangle.
 
         Or only one argument, a mesh of another package: anything with `vertices` and `faces`, as in trimesh, or
         `triangles`, as in Open3D.
         """
-        placed, corners = mesh_arrays(vertices, faces)
+        numbers, corners = mesh_arrays(vertices, faces)
+        floats, base = about_base(numbers, corners)
         with self._exclusive() as engine:
-            return engine.add_mesh(placed, corners)
+            return engine.add_mesh(floats, corners, base)
 
     def load_mesh(self, file: Path) -> int:
         """Adds the mesh that read_mesh(file) reads and returns its id."""
-        return self.add_mesh(*read_mesh(file))
+        mesh = file_mesh(file)
+        with self._exclusive() as engine:
+            return engine.add_mesh(*mesh)
 
     def load_assembly(
         self, file: Path, transform: npt.ArrayLike | None = None, *, mask: int = _ALL_BITS
@@ -124,7 +128,7 @@ class Scene:
             transforms = regular(_poses(transform, "transform"), "transform") @ transforms
         bits = np.full(len(placed), one_whole_number(mask, "mask", LEAST_MASK, MOST_MASK), np.uint32)
         with self._exclusive() as engine:
-            ids = [engine.add_mesh(vertices, faces) for vertices, faces in meshes]
+            ids = [engine.add_mesh(*mesh) for mesh in meshes]
             objects = engine.add(np.array(ids, np.uint32)[placed], transforms, bits)
             self._names.update(zip(objects.tolist(), names))
             return objects
@@ -137,10 +141,11 @@ class Scene:
                 raise ValueError(f"mesh: expected a mesh that no object uses, got {number}")
             engine.remove_mesh(number)
 
-    def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
-        """A copy of a mesh: vertices (N, 3), faces (M, 3)."""
+    def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32] | npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
+        """A copy of a mesh: vertices (N, 3), float64 if float32 cannot hold them, and faces (M, 3)."""
         with self._reading() as engine:
-            return engine.mesh(self._known_mesh(mesh))
+            vertices, faces, base = engine.mesh(self._known_mesh(mesh))
+        return vertices_at(base, vertices), faces
 
     @property
     def meshes(self) -> list[int]:
@@ -195,13 +200,13 @@ class Scene:
 
     def set_vertices(self, mesh: int, vertices: npt.ArrayLike) -> None:
         """Moves the vertices of a mesh: (N, 3), as many as it has, as in add_mesh()."""
-        placed = mesh_vertices(vertices)
+        numbers = mesh_vertices(vertices)
         with self._exclusive() as engine:
             number = self._known_mesh(mesh)
-            count = len(engine.mesh(number)[0])
-            if len(placed) != count:
-                raise ValueError(f"vertices: expected shape ({count}, 3), got shape {placed.shape}")
-            engine.set_vertices(number, placed)
+            old, faces, _ = engine.mesh(number)
+            if len(numbers) != len(old):
+                raise ValueError(f"vertices: expected shape ({len(old)}, 3), got shape {numbers.shape}")
+            engine.set_vertices(number, *about_base(numbers, faces))
 
     def remove(self, objects: npt.ArrayLike) -> None:
         """Removes objects: ids (...). New objects get the least free ids."""
@@ -357,7 +362,7 @@ class Scene:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["settings"])  # type: ignore[misc]
         ids, meshes, transforms, masks, motions = state["objects"]
-        triangle = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.uint32)
+        triangle = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.uint32), np.zeros(3)
         # A new item gets the least free id: what is missing is added, too, and removed again.
         last_mesh = max(state["meshes"], default=-1)
         for mesh in range(last_mesh + 1):

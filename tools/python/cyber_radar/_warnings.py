@@ -7,7 +7,7 @@ import warnings
 
 
 class RoundingWarning(UserWarning):
-    """Vertices were rounded to float32, the engine's precision for meshes."""
+    """Floats, the engine's precision for meshes, cannot hold a mesh's numbers."""
 
 
 class MeshFileWarning(UserWarning):

@@ -132,17 +132,46 @@ def test_a_relief_is_machined(tmp_path):
     assert len(table) == report["holder_touches_first"] > 0
     assert (table[:, 3] > table[:, 2]).all()
 
-    moves = [line for line in (tmp_path / "path.ngc").read_text().splitlines() if line.startswith("G1 ")]
-    driven = np.array([[float(word[1:]) for word in line.split()[1:4]] for line in moves])
-    order = np.lexsort((driven[:, 0], driven[:, 1]))
-    assert (driven[order, 2] >= heights.ravel()).all() and (driven[order, 2] <= heights.ravel() + 1.01e-4).all()
-    steps = np.abs(np.diff(driven[:, :2], axis=0)).sum(axis=1)
-    np.testing.assert_allclose(steps, 1, atol=2e-4)  # to and fro, never across the part
+    driven = path_in(tmp_path)
+    on_raster = (driven[:, :2] == np.round(driven[:, :2])).all(axis=1)
+    of_raster = driven[on_raster]
+    over = of_raster[np.lexsort((of_raster[:, 0], of_raster[:, 1])), 2] - heights.ravel()
+    assert (over >= 0.01).all() and np.median(over) <= 0.0101 and over.max() < 0.1
+    steps = np.abs(np.diff(of_raster[:, :2], axis=0)).sum(axis=1)
+    assert (steps == 1).all()  # to and fro, never across the part
+    assert report["moves"] == 440 > report["moves_too_deep"] > 0
+    assert report["points_inserted"] == len(driven) - 441 > 0 and 0 < report["path_longer_percent"] < 5
 
     grey = pixels(tmp_path / "heights.png")[::-1, :, 0].astype(float)
     scaled = 255 * (heights - heights.min()) / np.ptp(heights)
     assert np.abs(grey - scaled).max() <= 1
     assert (pixels(tmp_path / "surface.png") != 255).any(axis=-1).mean() > 0.2
+
+
+def path_in(folder) -> np.ndarray:
+    moves = [line for line in (folder / "path.ngc").read_text().splitlines() if line.startswith("G1 ")]
+    return np.array([[float(word[1:]) for word in line.split()[1:4]] for line in moves])
+
+
+@pytest.mark.parametrize("cutter", [BALL, FLAT, BULL, CONE])
+def test_a_round_cutter_cuts_too_deep_at_no_point_of_its_path_and_neither_does_its_holder(cutter):
+    vertices, faces = drop_cutter.relief(cells=7, side=12.0)
+    machine, tool = drop_cutter.Machine((vertices, faces), 1.0, "reference"), cutter.circumscribed(48, 12)
+    heights, _, _ = machine.drop(tool)
+    path, work = machine.path(tool, heights, 0.01)
+    assert work["moves_too_deep"] > 50 and work["points_inserted"] == len(path) - heights.size > 50
+    rng = np.random.default_rng(8)
+    move, share = rng.integers(0, len(path) - 1, 200), rng.uniform(0, 1, (200, 1))
+    between = (1 - share) * path[move] + share * path[move + 1]
+    corners = vertices.astype(float)[faces]
+    above = between[:, 2] - exact_heights(cutter, corners, between[:, :2])
+    assert (above >= 0).all() and np.median(above) < 0.1
+
+    held, longer = machine.hold(drop_cutter.cylinder(8, 5, 30, 24), path, 0.01)
+    assert (held > path[:, 2]).any() and 0 < longer - (held - path[:, 2]).max() < 0.1
+    between = between[:60]
+    assert (between[:, 2] + longer + 5 >= exact_heights(Cutter(8, 50), corners, between[:, :2])).all()
+    assert machine.hold(drop_cutter.cylinder(8, 40, 60, 24), path, 0.01)[1] == 0
 
 
 def test_the_surface_left_is_the_lowest_envelope_and_never_below_the_part():
@@ -177,7 +206,7 @@ def test_any_mesh_may_be_the_cutter_and_depth_pictures_are_compared(tmp_path):
 
 def test_the_turned_cube_has_no_holes():
     vertices, faces = drop_cutter.cube()
-    machine = drop_cutter.Machine((vertices, faces), 7.0, "reference")
+    machine = drop_cutter.Machine((vertices, faces), 6.9, "reference")  # no place a radius beyond the rim
     heights, _, _ = machine.drop(BALL.circumscribed(64, 16))
     points = np.stack(np.meshgrid(machine.raster.x, machine.raster.y), axis=-1).reshape(-1, 2)
     expected = exact_heights(BALL, vertices.astype(float)[faces], points)

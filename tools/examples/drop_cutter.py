@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Machines a surface: a cutter falls along -z at every point of a raster until it touches the part.
+"""Machines a surface: a cutter falls along -z at every point of a raster until it touches the part, and moves from point
+to point without cutting too deep.
 
     PYTHONPATH=build/release/python python3 tools/examples/drop_cutter.py part.stl --cutter ball --diameter 6 --out part
     ... drop_cutter.py relief --cutter mill.stl --holder 20 30 --step 0.5 --out relief
@@ -7,12 +8,13 @@
 
 The part is a mesh file, or "relief" or "cube", which are made here. The cutter is a ball, a flat or a bull-nosed end
 mill, a cone, or any mesh file with its tip at the origin. A round cutter is cast twice, as a mesh inside it and as a mesh
-around it: its exact height lies between the two. The higher one is driven, so that it does not cut
-too deep at any point; the straight moves between the points are not cast, and may.
+around it: its exact height lies between the two. The one around it is driven, --tolerance higher, and cast along every
+straight move, too: where it would touch the part, points are inserted. So it cuts too deep nowhere.
 
-Writes heights.npy (the tip's height at each point, row by row), heights.png, path.ngc (G-code, millimetres),
-report.json, drops.html (a page that shows some of the casts), of a round cutter also surface.png (what is left of the
-stock), and with a holder holder.csv (where it would touch first).
+Writes heights.npy (the tip's height at each point of the raster, row by row), heights.png, path.ngc (G-code,
+millimetres), report.json, drops.html (a page that shows some of the casts), of a round cutter also surface.png (what is
+left of the stock), and with a holder holder.csv (where it would touch first; the report says how much longer the tool must
+be).
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ import numpy as np
 import cyber_radar
 import picture
 import png
+import tool_path
 from cutters import Cutter, Mesh, cylinder
 
 
@@ -41,12 +44,9 @@ class Raster:
     top: float  #: where the tip starts, above the part
     floor: float  #: where it ends if nothing is below
 
-    def poses(self) -> np.ndarray:
-        """(ny, nx, 4, 4): the tip at the top of each point."""
-        poses = np.zeros((len(self.y), len(self.x), 4, 4)) + np.eye(4)
-        poses[..., 0, 3], poses[..., 1, 3] = np.meshgrid(self.x, self.y)
-        poses[..., 2, 3] = self.top
-        return poses
+    def points(self) -> np.ndarray:
+        """(ny, nx, 2)."""
+        return np.stack(np.meshgrid(self.x, self.y), axis=-1)
 
 
 class Machine:
@@ -56,26 +56,65 @@ class Machine:
         self.scene, self.mode = cyber_radar.Scene(), mode
         self.scene.add(self.scene.add_mesh(*part))
         low, high = part[0].min(axis=0).astype(float), part[0].max(axis=0).astype(float)
-        ticks = [np.arange(low[k], high[k] + 0.5 * step, step) for k in range(2)]
+        ticks = [tool_path.written(np.arange(low[k], high[k] + 0.5 * step, step)) for k in range(2)]
         self.raster = Raster(*ticks, top=high[2] + 1.0, floor=low[2])
 
     def drop(
         self, tool: Mesh, mode: str | None = None, resolution: int = 0, page: pathlib.Path | None = None
     ) -> tuple[np.ndarray, float, int]:
         """Heights of the tip, (ny, nx), the seconds that took, and how many casts were undecided. page: shows some."""
-        mesh = self.scene.add_mesh(*tool)
-        poses, way = self.raster.poses(), [0, 0, self.raster.floor - self.raster.top]
-        mode = mode or self.mode
-        self.scene.cast(mesh, poses[:1, :1], way, mode=mode, resolution=resolution)  # opens the device
+        mesh, points, mode = self.scene.add_mesh(*tool), self.raster.points(), mode or self.mode
+        self.falls(mesh, points[:1, :1], mode, resolution)  # opens the device
         start = time.perf_counter()
-        casts = self.scene.cast(mesh, poses, way, mode=mode, resolution=resolution)
+        casts, heights = self.falls(mesh, points, mode, resolution)
         seconds = time.perf_counter() - start
         if page is not None:
             every = 1 + max(casts.shape) // 7  # few, so that the part is seen between them
             casts[::every, ::every].show(page, title="A cutter falls onto a part")
         self.scene.remove_mesh(mesh)
-        heights = np.where(casts.touches, self.raster.top - casts.distance, self.raster.floor)
         return heights, seconds, int((casts.status == cyber_radar.Status.UNDECIDED).sum())
+
+    def falls(
+        self, mesh: int, points: np.ndarray, mode: str, resolution: int = 0
+    ) -> tuple[cyber_radar.Casts, np.ndarray]:
+        """Casts from the top at these points (..., 2), and the heights of the tip, (...)."""
+        starts = np.concatenate([points, np.full_like(points[..., :1], self.raster.top)], axis=-1)
+        way = [0, 0, self.raster.floor - self.raster.top]
+        casts = self.scene.cast(mesh, tool_path.poses_at(starts), way, mode=mode, resolution=resolution)
+        return casts, np.where(casts.touches, self.raster.top - casts.distance, self.raster.floor)
+
+    def path(self, tool: Mesh, heights: np.ndarray, above: float) -> tuple[np.ndarray, dict]:
+        """Rows to and fro over the raster, `above` these heights, with the points that it takes for no move to touch the
+        part: (n, 3). And what that took."""
+        mesh = self.scene.add_mesh(*tool)
+        up = tool_path.written_up(heights + above)
+        rows = np.concatenate([self.raster.points(), up[..., None]], axis=-1)
+        rows[1::2] = rows[1::2, ::-1].copy()
+        straight = rows.reshape(-1, 3)
+        points, gouged = tool_path.free_path(
+            straight,
+            lambda places: tool_path.written_up(self.falls(mesh, places, self.mode)[1] + above),
+            lambda starts, ends: tool_path.touches(self.scene, mesh, starts, ends, self.mode),
+            above,
+        )
+        self.scene.remove_mesh(mesh)
+        longer = 100 * (tool_path.length(points) / tool_path.length(straight) - 1)
+        return points, {
+            "moves": len(gouged),
+            "moves_too_deep": int(gouged.sum()),
+            "points_inserted": len(points) - len(straight),
+            "path_longer_percent": longer,
+        }
+
+    def hold(self, holder: Mesh, path: np.ndarray, step: float) -> tuple[np.ndarray, float]:
+        """The heights at which a holder touches the part at the points of a path, and how much longer the tool must be."""
+        mesh = self.scene.add_mesh(*holder)
+        held = self.falls(mesh, path[:, :2], self.mode)[1]
+        longer = tool_path.lift_of(
+            path, held, lambda starts, ends: tool_path.touches(self.scene, mesh, starts, ends, self.mode), step
+        )
+        self.scene.remove_mesh(mesh)
+        return held, longer
 
 
 def surface_left(heights: np.ndarray, step: float, cutter: Cutter, top: float) -> np.ndarray:
@@ -120,14 +159,11 @@ def _grid_faces(rows: int, columns: int) -> np.ndarray:
     return np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)]).reshape(-1, 3)
 
 
-def write_path(file: pathlib.Path, raster: Raster, heights: np.ndarray) -> None:
-    """Rows to and fro. Heights are rounded up."""
-    up = np.ceil(heights * 1e4) / 1e4
-    lines = ["G21 G90", f"G0 Z{raster.top:.4f}"]
-    for row, y in enumerate(raster.y):
-        order = range(len(raster.x)) if row % 2 == 0 else range(len(raster.x) - 1, -1, -1)
-        lines += [f"G1 X{raster.x[i]:.4f} Y{y:.4f} Z{up[row, i]:.4f} F1000" for i in order]
-    file.write_text("\n".join([*lines, f"G0 Z{raster.top:.4f}", "M2", ""]))
+def write_path(file: pathlib.Path, top: float, points: np.ndarray) -> None:
+    top = max(top, points[:, 2].max())
+    lines = ["G21 G90", f"G0 Z{top:.4f}", "G0 X{:.4f} Y{:.4f}".format(*points[0, :2])]
+    lines += ["G1 X{:.4f} Y{:.4f} Z{:.4f} F1000".format(*point) for point in points]
+    file.write_text("\n".join([*lines, f"G0 Z{top:.4f}", "M2", ""]))
 
 
 def write_heights(file: pathlib.Path, heights: np.ndarray) -> None:
@@ -197,17 +233,16 @@ def machine_part(options: argparse.Namespace) -> dict:
 
     np.save(options.out / "heights.npy", heights)
     write_heights(options.out / "heights.png", heights)
-    write_path(options.out / "path.ngc", machine.raster, heights)
+    path, work = machine.path(tool, heights, options.tolerance)
+    report |= work
+    write_path(options.out / "path.ngc", machine.raster.top, path)
     if cutter is not None:
-        left = surface_left(heights, options.step, cutter, machine.raster.top - 1.0)
+        left = surface_left(heights + options.tolerance, options.step, cutter, machine.raster.top - 1.0)
         write_surface(options.out / "surface.png", machine.raster, left)
     if options.holder:
-        held, _, _ = machine.drop(holder_from(options))
-        rows, columns = np.nonzero(held > heights)
-        table = [
-            f"{machine.raster.x[i]},{machine.raster.y[k]},{heights[k, i]},{held[k, i]}" for k, i in zip(rows, columns)
-        ]
-        (options.out / "holder.csv").write_text("\n".join(["x,y,cutter_z,holder_z", *table, ""]))
+        held, report["tool_longer_mm"] = machine.hold(holder_from(options), path, options.tolerance)
+        table = np.column_stack([path, held])[held > path[:, 2]]
+        np.savetxt(options.out / "holder.csv", table, "%r", ",", header="x,y,cutter_z,holder_z", comments="")
         report["holder_touches_first"] = len(table)
     if options.compare:
         report["modes"] = compare_modes(machine, tool)
@@ -227,6 +262,7 @@ def main() -> None:
         "--holder", nargs="+", help="a mesh file with the tip at the origin, or a cylinder: RADIUS ABOVE"
     )
     parser.add_argument("--step", type=float, default=1.0, help="distance of the raster's points")
+    parser.add_argument("--tolerance", type=float, default=0.01, help="how far above its heights the tip is driven")
     parser.add_argument("--segments", type=int, default=64, help="corners around a round cutter")
     parser.add_argument("--arc-steps", type=int, default=16, help="rings of a rounded corner")
     parser.add_argument("--mode", choices=("contact", "reference"), default="contact")

@@ -18,6 +18,10 @@ namespace {
 using namespace radar;
 using namespace radar::tools;
 
+std::array<unsigned, 3> outwards(const Transform& pose) {
+  return mirrors(pose) ? std::array{0u, 2u, 1u} : std::array{0u, 1u, 2u};
+}
+
 struct Loaded {
   Assimp::Importer importer;
   const aiScene* scene = nullptr;
@@ -37,14 +41,15 @@ struct Loaded {
     for (unsigned i = 0; i < 12; ++i) pose.m[i] = all[i / 4][i % 4];
     return pose;
   }
-  /// The vertices of a node's mesh, in the world, in the order of its triangles.
+  /// The corners of a node's triangles, in the world, counterclockwise where glTF says that they are seen from outside.
   std::vector<Vec3> corners(const std::string& name) const {
     const aiNode* node = nodes.at(name);
     const Transform pose = poseOf(node);
     std::vector<Vec3> out;
     const aiMesh* mesh = scene->mMeshes[node->mMeshes[0]];
     for (unsigned f = 0; f < mesh->mNumFaces; ++f) {
-      for (unsigned i = 0; i < mesh->mFaces[f].mNumIndices; ++i) {
+      REQUIRE(mesh->mFaces[f].mNumIndices == 3);
+      for (const unsigned i : outwards(pose)) {
         const aiVector3D& p = mesh->mVertices[mesh->mFaces[f].mIndices[i]];
         out.push_back(transformPoint(pose, &p.x));
       }
@@ -65,7 +70,8 @@ void checkPlaced(const std::vector<Vec3>& found, const MeshData& mesh, const Tra
   double farthest = 10, worst = 0;
   for (const float value : mesh.positions) farthest = std::max(farthest, std::abs(double{value}));
   for (size_t i = 0; i < found.size(); ++i) {
-    worst = std::max(worst, lengthOf(found[i] - transformPoint(pose, &mesh.positions[3 * mesh.indices[i]])));
+    const uint32_t corner = mesh.indices[i - i % 3 + outwards(pose)[i % 3]];
+    worst = std::max(worst, lengthOf(found[i] - transformPoint(pose, &mesh.positions[3 * size_t{corner}])));
   }
   CHECK(worst < 1e-6 * farthest);
 }

@@ -7,6 +7,7 @@
 
 #include "import/gltf_document.h"
 #include "import/readers.h"
+#include "workloads/vectors.h"
 
 namespace radar::tools {
 

@@ -86,19 +86,6 @@ Transform product(const Transform& a, const Transform& b) {
   return result;
 }
 
-bool mirrors(const Transform& pose) {
-  double rows[3][3];  // scaled, so that products neither overflow nor underflow
-  for (unsigned row = 0; row < 3; ++row) {
-    double most = 0;
-    for (unsigned k = 0; k < 3; ++k) most = std::fmax(most, std::abs(pose.m[4 * row + k]));
-    if (most == 0) return false;
-    for (unsigned k = 0; k < 3; ++k) rows[row][k] = pose.m[4 * row + k] / most;
-  }
-  const auto& [a, b, c] = rows;
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]) <
-         0;
-}
-
 std::string bytesOf(const MeshFile& file) {
   Writer to;
   to.add<uint64_t>(file.parts.size());

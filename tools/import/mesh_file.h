@@ -34,8 +34,6 @@ struct MeshFile {
 
 /// a b: the pose of what b places in the frame that a places.
 Transform product(const Transform& a, const Transform& b);
-/// Whether a pose turns a mesh inside out.
-bool mirrors(const Transform& pose);
 
 /// As bytes, to pass it on to another process. The way back throws std::runtime_error for bytes that are no MeshFile.
 std::string bytesOf(const MeshFile& file);

@@ -18,6 +18,7 @@
 #include "import/gltf_document.h"
 #include "import/readers.h"
 #include "import/regular_file.h"
+#include "workloads/vectors.h"
 
 namespace radar::tools {
 

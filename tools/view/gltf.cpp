@@ -111,6 +111,15 @@ class Writer {
     return static_cast<int>(model_.accessors.size()) - 1;
   }
 
+  /// The triangles of a mesh; `turned`: wound the other way round.
+  int addIndices(uint32_t number, bool turned) {
+    const auto [found, isNew] = indices_.try_emplace({number, turned});
+    if (!isNew) return found->second;
+    std::vector<uint32_t> indices = workload_.meshes[number].indices;
+    for (size_t i = 0; turned && i < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
+    return found->second = addAccessor(indices, TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+  }
+
   /// A mesh of the workload, as deformed in a scene, and placed if `pose` is given.
   int addMesh(uint32_t scene, uint32_t number, size_t material, const Transform* pose) {
     const MeshData& mesh = workload_.meshes[number];
@@ -123,9 +132,6 @@ class Writer {
     }
     const auto key = std::tuple(isDeformed ? scene + 1 : 0, number, material);
     if (const auto found = meshes_.find(key); !pose && found != meshes_.end()) return found->second;
-    if (!indices_.contains(number)) {
-      indices_[number] = addAccessor(mesh.indices, TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-    }
     std::vector<float> placed;
     if (pose) {
       for (size_t i = 0; i < positions->size(); i += 3) {
@@ -139,7 +145,7 @@ class Writer {
     }
     tinygltf::Primitive primitive;
     primitive.attributes["POSITION"] = positions_[own];
-    primitive.indices = indices_[number];
+    primitive.indices = addIndices(number, pose && mirrors(*pose));
     primitive.material = static_cast<int>(material);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     if (pose) positions_.erase(own);
@@ -261,7 +267,7 @@ class Writer {
   const LeftOut& left_;
   Cut cut_;
   tinygltf::Model model_;
-  std::map<uint32_t, int> indices_;                               // accessors by mesh
+  std::map<std::pair<uint32_t, bool>, int> indices_;              // accessors by mesh, and whether it is turned
   std::map<std::pair<uint32_t, uint32_t>, int> positions_;        // accessors by deforming scene + 1, or 0, and mesh
   std::map<std::tuple<uint32_t, uint32_t, size_t>, int> meshes_;  // the same and material
 };

@@ -62,6 +62,19 @@ constexpr Rotation linearPart(const Transform& pose) {
   const auto& m = pose.m;
   return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
 }
+/// Whether a pose turns a mesh inside out.
+inline bool mirrors(const Transform& pose) {
+  double rows[3][3];  // scaled, so that products neither overflow nor underflow
+  for (unsigned row = 0; row < 3; ++row) {
+    double most = 0;
+    for (unsigned k = 0; k < 3; ++k) most = std::fmax(most, std::abs(pose.m[4 * row + k]));
+    if (most == 0) return false;
+    for (unsigned k = 0; k < 3; ++k) rows[row][k] = pose.m[4 * row + k] / most;
+  }
+  const auto& [a, b, c] = rows;
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]) <
+         0;
+}
 constexpr void moveBy(Transform& pose, const Vec3& offset) {
   for (size_t k = 0; k < 3; ++k) pose.m[4 * k + 3] += offset[k];
 }

@@ -1,10 +1,8 @@
 // 3MF files: zip archives of XML.
-#include <zlib.h>
-
 #include "mesh_texts.h"
 
 using namespace radar::tools;
-using radar::test::append;
+using radar::test::archiveOf;
 using radar::test::Contains;
 using radar::test::readWhole;
 using radar::test::refusalOf;
@@ -12,72 +10,13 @@ using radar::test::ScratchFolder;
 
 namespace {
 
-/// A zip archive: `deflated`, or stored; `streamed`: sizes are zero in front of a file's bytes, and 64-bit in the list.
-std::string zipOf(const std::vector<std::pair<std::string, std::string>>& files, bool deflated, bool streamed) {
-  std::string bytes, list;
-  for (const auto& [name, content] : files) {
-    std::string packed = content;
-    if (deflated) {
-      uLongf size = compressBound(content.size());
-      packed.resize(size);
-      REQUIRE(compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(content.data()),
-                       content.size()) == Z_OK);
-      packed = packed.substr(2, size - 6);  // without zlib's head and checksum
-    }
-    const auto check =
-        static_cast<uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(content.data()), uInt(content.size())));
-    const auto offset = static_cast<uint32_t>(bytes.size());
-    const auto head = [&](std::string& to, bool isListed) {
-      append(to, uint32_t(isListed ? 0x02014b50 : 0x04034b50));
-      if (isListed) append(to, uint16_t(45));
-      append(to, uint16_t(45));
-      append(to, uint16_t(streamed ? 8 : 0));
-      append(to, uint16_t(deflated ? 8 : 0));
-      append(to, uint32_t(0));  // when
-      append(to, isListed || !streamed ? check : 0u);
-      append(to, streamed ? (isListed ? UINT32_MAX : 0u) : uint32_t(packed.size()));
-      append(to, streamed ? (isListed ? UINT32_MAX : 0u) : uint32_t(content.size()));
-      append(to, uint16_t(name.size()));
-    };
-    head(bytes, false);
-    append(bytes, uint16_t(0));
-    bytes += name + packed;
-    head(list, true);
-    append(list, uint16_t(streamed ? 20 : 0));
-    list.append(10, '\0');  // no remark, where the archive begins, what kind of file
-    append(list, offset);
-    list += name;
-    if (!streamed) continue;
-    append(list, uint16_t(1));
-    append(list, uint16_t(16));
-    append(list, uint64_t(content.size()));
-    append(list, uint64_t(packed.size()));
-  }
-  const auto at = static_cast<uint32_t>(bytes.size());
-  bytes += list + "PK\5\6" + std::string(4, '\0');
-  for (int i = 0; i < 2; ++i) append(bytes, static_cast<uint16_t>(files.size()));
-  append(bytes, static_cast<uint32_t>(list.size()));
-  append(bytes, at);
-  return bytes + std::string(2, '\0');
-}
-
 constexpr const char* kTriangle =
     R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices>
 <triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh>)";
 
 std::string modelOf(const std::string& resources, const std::string& build, const std::string& more = "") {
-  return R"(<?xml version="1.0" encoding="UTF-8"?><model unit="inch" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" )" +
+  return R"(<?xml version="1.0" encoding="UTF-8"?><model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" )" +
          more + "><resources>" + resources + "</resources><build>" + build + "</build></model>";
-}
-
-std::string archiveOf(const std::string& model, bool deflated = true, bool streamed = false) {
-  return zipOf({{"_rels/.rels",
-                 R"(<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
-<Relationship Target="/Metadata/thumbnail.png" Id="r1" Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/>
-<Relationship Target="/3D/a.model" Id="r0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)"},
-                {"Metadata/thumbnail.png", "\x89PNG"},
-                {"3D/a.model", model}},
-               deflated, streamed);
 }
 
 }  // namespace
@@ -91,6 +30,23 @@ TEST_CASE("a 3MF file with a thumbnail is read, stored, deflated or streamed") {
       const MeshData mesh = readWhole(folder.write("a.3mf", archiveOf(model, deflated, streamed)));
       CHECK(mesh.positions == std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     }
+  }
+}
+
+TEST_CASE("the numbers of a 3MF file stay as they are, and a warning names a unit that is not the millimetre") {
+  const ScratchFolder folder;
+  const std::string object = std::string("<object id=\"1\">") + kTriangle + "</object>";
+  for (const std::string unit : {"inch", "micron", "millimeter", ""}) {
+    std::string model = modelOf(object, "<item objectid=\"1\"/>");
+    model.replace(model.find("millimeter"), 10, unit);
+    if (unit.empty()) model.erase(model.find("unit=\"\""), 7);
+    CAPTURE(unit);
+    std::vector<std::string> warnings;
+    CHECK(readMesh(folder.write("a.3mf", archiveOf(model)), warnings).positions ==
+          std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const bool isOdd = unit == "inch" || unit == "micron";
+    REQUIRE(warnings.size() == (isOdd ? 1 : 0));
+    if (isOdd) CHECK_THAT(warnings[0], Contains("a.3mf: its unit is " + unit + ", not millimeter"));
   }
 }
 

@@ -4,6 +4,7 @@
 #include "import/mesh_import.h"
 #include "support/catch.h"
 #include "support/scratch_folder.h"
+#include "support/threemf.h"
 
 namespace radar::test {
 
@@ -33,11 +34,6 @@ inline std::string plyHeader(size_t vertices, size_t faces, const std::string& f
   return "ply\nformat " + format + " 1.0\nelement vertex " + std::to_string(vertices) + "\nproperty " + type +
          " x\nproperty " + type + " y\nproperty " + type + " z\nelement face " + std::to_string(faces) +
          "\nproperty list uchar int vertex_indices\nend_header\n";
-}
-
-template <class Value>
-void append(std::string& bytes, const Value& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 /// The bytes of the corners (0, 0, 0), (1, 0, 0) and (0, 1, 0).

@@ -30,6 +30,7 @@ struct MeshFile {
   };
   std::vector<Part> parts;
   std::vector<Node> nodes;  ///< depth-first; those without parts may be missing
+  std::string unit;         ///< of 3MF, if it is not the usual millimetre
 };
 
 /// a b: the pose of what b places in the frame that a places.

@@ -108,6 +108,10 @@ MeshFile openFile(const std::filesystem::path& path, std::vector<std::string>& w
   OddFaces odd;
   for (MeshFile::Part& part : file.parts) splitFaces(path.string(), part, odd);
   const std::string name = printable(path.string());
+  if (!file.unit.empty()) {
+    warnings.push_back(name + ": its unit is " + printable(file.unit, 40) +
+                       ", not millimeter as usual: its numbers stay as they are");
+  }
   if (odd.bent > 0) {
     std::ostringstream most;
     most << odd.most;

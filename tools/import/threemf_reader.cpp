@@ -166,6 +166,8 @@ ThreeMfReader::Use ThreeMfReader::useFrom(const Attributes& given) const {
 }
 
 void ThreeMfReader::beginModel(const Attributes& given) {
+  const auto unit = given.find("unit");
+  if (unit != given.end() && unit->second != "millimeter") result_.unit = unit->second;
   const auto required = given.find("requiredextensions");
   if (required == given.end()) return;
   Text prefixes(file_, required->second);

@@ -20,7 +20,7 @@ def test_messages_name_the_argument_and_the_shape(boxes):
     cast = scene.cast
     six = np.zeros((6, 3))
     for call, words in (
-        (lambda: cast(mesh, np.eye(3), DOWN), "poses: expected numbers of shape (..., 4, 4), got shape (3, 3)"),
+        (lambda: cast(mesh, np.eye(3), DOWN), "poses: expected numbers of shape (..., 4, 4) or (..., 3, 4), got shape (3, 3)"),
         (lambda: cast(mesh, None, 5.0), "displacements: expected numbers of shape (..., 3), got shape ()"),
         (lambda: cast(mesh, None, [[0, 0], [1]]), "displacements: expected numbers of shape (..., 3), got"),
         (lambda: cast(mesh, None, ["a", "b", "c"]), "displacements: expected numbers of at most double precision"),

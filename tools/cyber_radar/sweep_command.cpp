@@ -19,9 +19,9 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --expect clear
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --view sweep.html
 
-SCENE and SENSOR are any files assimp reads (OBJ, PLY, STL, glTF, ...), in one common unit; FILE#3 or FILE#NAME is one
-node of a file, in its own frame. The scene stands as it is; the sensor is turned (--rotate), put in its place (--at)
-and moved along --direction for --distance.)";
+SCENE and SENSOR are OBJ, STL, PLY, OFF, 3MF or glTF 2 files, or what assimp reads besides, in one common unit; FILE#3 or
+FILE#NAME is one node of a file, in its own frame. The scene stands as it is; the sensor is turned (--rotate), put in its
+place (--at) and moved along --direction for --distance.)";
 
 struct Options {
   EngineOptions engine;

@@ -180,7 +180,7 @@ def load(file: str | None) -> cyber_radar.Scene:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", nargs="?", help="any file assimp reads; each node with triangles is a part")
+    parser.add_argument("file", nargs="?", help="a mesh file, such as glTF; each node with triangles is a part")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder to write to")
     parser.add_argument("--directions", type=int, choices=(6, 26), default=6, help="along the axes, or diagonals, too")
     parser.add_argument("--mode", choices=("contact", "reference"), default="contact")

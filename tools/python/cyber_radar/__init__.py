@@ -4,7 +4,7 @@
 
     scene = cyber_radar.Scene()
     mesh = scene.add_mesh(vertices, faces)             # (N, 3), (M, 3); or scene.load_mesh("part.stl")
-    scene.add(mesh, transforms)                        # (..., 4, 4): the objects that stand still
+    scene.add(mesh, transforms)                        # (..., 4, 4) or (..., 3, 4): what stands still
     casts = scene.cast(mesh, poses, displacements)     # (..., 4, 4), (..., 3): what moves, from where, how far
     casts.distance, casts.object, casts.point          # (...), (...), (..., 3)
 

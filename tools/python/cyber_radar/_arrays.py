@@ -11,9 +11,10 @@ MOST_EXACT = 2**53  # whole numbers up to this are doubles
 LEAST_MASK, MOST_MASK = 0, 2**32 - 1
 
 
-def reals(value: npt.ArrayLike, name: str, inner: tuple[int, ...] = ()) -> npt.NDArray[np.float64]:
-    """Doubles of shape (..., *inner), adjacent in memory. Numbers that doubles cannot hold are refused."""
-    array = _array(value, name, inner, "numbers")
+def reals(value: npt.ArrayLike, name: str, inner: tuple[int, ...] = (), also: str = "") -> npt.NDArray[np.float64]:
+    """Doubles of shape (..., *inner), adjacent in memory. Numbers that doubles cannot hold are refused. `also`: another
+    shape that would do, for messages."""
+    array = _array(value, name, inner, "numbers", also)
     if array.dtype.kind not in "fiu" or array.dtype.itemsize > 8:
         raise ValueError(f"{name}: expected numbers of at most double precision, got dtype {array.dtype}")
     if array.dtype.kind in "iu" and array.dtype.itemsize == 8 and ((array > MOST_EXACT) | (array < -MOST_EXACT)).any():
@@ -43,7 +44,7 @@ def poses(value: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
         rows = reals(value, name, (3, 4))
         last = np.broadcast_to(np.array([0.0, 0.0, 0.0, 1.0]), (*rows.shape[:-2], 1, 4))
         return np.concatenate([rows, last], axis=-2)
-    matrices = reals(value, name, (4, 4))
+    matrices = reals(value, name, (4, 4), " or (..., 3, 4)")
     wrong = (matrices[..., 3, :] != (0.0, 0.0, 0.0, 1.0)).any(axis=-1)
     if wrong.any():
         wrong &= np.isfinite(matrices).all(axis=(-2, -1))
@@ -64,9 +65,9 @@ def common_shape(arrays: dict[str, tuple[npt.NDArray[Any], int]]) -> tuple[int, 
         raise ValueError(f"expected arguments whose leading shapes broadcast together, got {got}") from None
 
 
-def _array(value: npt.ArrayLike, name: str, inner: tuple[int, ...], what: str) -> npt.NDArray[Any]:
+def _array(value: npt.ArrayLike, name: str, inner: tuple[int, ...], what: str, also: str = "") -> npt.NDArray[Any]:
     lengths = ", ".join(["...", *("K" if length < 0 else str(length) for length in inner)])
-    expected = f"{name}: expected {what} of shape ({lengths})"
+    expected = f"{name}: expected {what} of shape ({lengths}){also}"
     if isinstance(value, np.ma.MaskedArray):
         raise ValueError(f"{expected}, got a masked array, whose mask would be lost")
     try:

@@ -119,7 +119,7 @@ class Scene:
     ) -> npt.NDArray[np.int64]:
         """Adds one object for each node of a mesh file that has triangles, placed by the nodes' transforms.
 
-        transform: (4, 4) world from file. Returns the objects' ids, (n,), in the file's depth-first order. `names` has
+        transform: (4, 4) or (3, 4) world from file. Returns the objects' ids, (n,), in the file's depth-first order. `names` has
         the nodes' names; nodes that place the same triangles share a mesh.
         """
         meshes, names, placed, transforms, notes = _engine.read_assembly(os.fspath(file))
@@ -158,7 +158,8 @@ class Scene:
     ) -> Any:
         """Adds objects, which place meshes, and returns their ids: (...), or a number for a single one.
 
-        mesh: (...) ids. transforms: (..., 4, 4) or (..., 3, 4) world from mesh, any invertible affine matrices; None: the identity.
+        mesh: (...) ids. transforms: (..., 4, 4) or (..., 3, 4) world from mesh, any invertible affine matrices; None: the
+        identity.
         mask: (...) 32 bits; an object takes part in a cast whose mask shares one. All leading shapes broadcast.
         """
         matrices = np.eye(4) if transforms is None else regular(_poses(transforms, "transforms"), "transforms")
@@ -174,7 +175,7 @@ class Scene:
         return ids if shape else int(ids)
 
     def set_transforms(self, objects: npt.ArrayLike, transforms: npt.ArrayLike) -> None:
-        """Moves objects: ids (...), transforms (..., 4, 4) world from mesh; leading shapes broadcast."""
+        """Moves objects: ids (...), transforms (..., 4, 4) or (..., 3, 4) world from mesh; leading shapes broadcast."""
         matrices = regular(_poses(transforms, "transforms"), "transforms")
         with self._exclusive() as engine:
             ids = self._known_objects(objects, "objects")

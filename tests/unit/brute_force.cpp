@@ -27,12 +27,6 @@ double magnitude(const radar::MeshView& mesh, const Transform& pose) {
   return greatest;
 }
 
-bool isMirrored(const Transform& pose) {
-  const int scale = leastExponent(pose.m.data(), pose.m.size());
-  const auto row = [&](size_t i) { return scaled(Corner{pose.m[4 * i], pose.m[4 * i + 1], pose.m[4 * i + 2]}, scale); };
-  return dot(row(0), cross(row(1), row(2))) < 0;
-}
-
 std::vector<Corners> placed(const radar::MeshView& mesh, const Transform& pose) {
   std::vector<Corners> triangles;
   for (uint32_t i = 0; i < mesh.triangleCount(); ++i) triangles.push_back(corners(mesh, pose, i));
@@ -138,23 +132,14 @@ std::vector<IntVec> ownNormals(const IntTriangle& a, const IntTriangle& b) {
   return out;
 }
 
-bool isStep(const radar::Scene& scene, const radar::Query& query) {
-  if (query.motion) return true;
-  for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
-    if (scene.hasObject(id) && scene.object(id).motion != Corner{}) return true;
-  }
-  return false;
-}
-
 /// The sensor and one object on a common scale.
 class Meeting {
  public:
-  Meeting(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id, bool isStep)
-      : query_(query), id_(id), isStep_(isStep) {
+  Meeting(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id)
+      : query_(query), id_(id), isStep_(isStep(scene, query)) {
     const radar::Object& object = scene.object(id);
     const radar::MeshView sensor = scene.mesh(query.mesh), mesh = scene.mesh(object.mesh);
-    const double slack = query.slack.value_or(
-        0x1p-48 * std::max(magnitude(sensor, query.worldFromMesh), magnitude(mesh, object.worldFromMesh)));
+    const double slack = slackOf(scene, query, id);
     const std::vector<Corners> a = placed(sensor, query.worldFromMesh), b = placed(mesh, object.worldFromMesh);
     std::vector<double> all{slack};
     for (const std::vector<Corners>* triangles : {&a, &b}) {
@@ -164,16 +149,12 @@ class Meeting {
     }
     scale_ = leastExponent(all.data(), all.size());
     slack_ = scaled(slack, scale_);
-    Corner direction = query.direction;
-    if (isStep) {
-      const Corner displacement = radar::displacementOf(query);
-      for (size_t k = 0; k < 3; ++k) direction[k] = displacement[k] - object.motion[k];
-    }
+    const Corner direction = directionPast(scene, query, id);
     dirScale_ = leastExponent(direction.data(), 3);
     direction_ = scaled(direction, dirScale_);
     stands_ = isZero(direction_);
-    const radar::Motion sweep = isStep ? radar::Motion(direction, {}) : radar::Motion(query);
-    whole_ = courseOf(isStep ? direction : sweep.direction, sweep.distance, sweep.length, scale_);
+    const radar::Motion sweep = isStep_ ? radar::Motion(direction, {}) : radar::Motion(query);
+    whole_ = courseOf(isStep_ ? direction : sweep.direction, sweep.distance, sweep.length, scale_);
     course_ = stands_ ? IntVec{1, 2, 3} : direction_;
     a_ = boxed(a, isMirrored(query.worldFromMesh), scale_);
     b_ = boxed(b, isMirrored(object.worldFromMesh), scale_);
@@ -359,13 +340,47 @@ std::string describe(const Contact* contact) {
 
 }  // namespace
 
+bool takesPart(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id) {
+  return scene.hasObject(id) && (scene.object(id).mask & query.mask) != 0 &&
+         std::find(query.exclude.begin(), query.exclude.end(), id) == query.exclude.end();
+}
+
+bool isMirrored(const Transform& pose) {
+  const int scale = leastExponent(pose.m.data(), pose.m.size());
+  const auto row = [&](size_t i) { return scaled(Corner{pose.m[4 * i], pose.m[4 * i + 1], pose.m[4 * i + 2]}, scale); };
+  return dot(row(0), cross(row(1), row(2))) < 0;
+}
+
+double slackOf(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id) {
+  const radar::Object& object = scene.object(id);
+  return query.slack.value_or(0x1p-48 * std::max(magnitude(scene.mesh(query.mesh), query.worldFromMesh),
+                                                 magnitude(scene.mesh(object.mesh), object.worldFromMesh)));
+}
+
+bool isStep(const radar::Scene& scene, const radar::Query& query) {
+  if (query.motion) return true;
+  for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    if (scene.hasObject(id) && scene.object(id).motion != Corner{}) return true;
+  }
+  return false;
+}
+
+Corner directionPast(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id) {
+  if (!isStep(scene, query)) return query.direction;
+  Corner direction = radar::displacementOf(query);
+  for (size_t k = 0; k < 3; ++k) direction[k] -= scene.object(id).motion[k];
+  return direction;
+}
+
+bool surfacesCross(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id) {
+  return Meeting(scene, query, id).surfacesCross();
+}
+
 Truth truthOf(const radar::Scene& scene, const radar::Query& query) {
   Truth truth;
-  const bool step = isStep(scene, query);
   for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
-    if (!scene.hasObject(id) || (scene.object(id).mask & query.mask) == 0) continue;
-    if (std::find(query.exclude.begin(), query.exclude.end(), id) != query.exclude.end()) continue;
-    const Meeting meeting(scene, query, id, step);
+    if (!takesPart(scene, query, id)) continue;
+    const Meeting meeting(scene, query, id);
     if (query.skipOverlapping && meeting.surfacesCross()) {
       truth.overlapping.push_back(id);
     } else if (std::optional<Contact> first = meeting.first()) {
@@ -402,7 +417,7 @@ std::string faultOf(const Contact* contact, const radar::Query& query, const rad
 }
 
 std::string faultOfNormal(const radar::Scene& scene, const radar::Query& query, const radar::Result& hit) {
-  return Meeting(scene, query, hit.object, isStep(scene, query)).faultOfNormal(hit);
+  return Meeting(scene, query, hit.object).faultOfNormal(hit);
 }
 
 std::string faultOf(const Truth& truth, const radar::Query& query, const radar::Result& result,

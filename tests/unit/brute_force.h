@@ -20,6 +20,22 @@ struct Truth {
   std::vector<Contact> contacts;             ///< within D, one per object, by (t, object)
 };
 
+/// Whether the query counts the object, by its mask and what is excluded.
+bool takesPart(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id);
+
+/// Whether the pose turns a mesh inside out.
+bool isMirrored(const radar::Transform& pose);
+
+/// How far the sensor and an object may sink into each other by rounding.
+double slackOf(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id);
+
+/// Whether the query takes a step; along what its sensor then moves past an object, at rest if that is 0.
+bool isStep(const radar::Scene& scene, const radar::Query& query);
+Corner directionPast(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id);
+
+/// Whether surfaces cross at the start by more than the slack.
+bool surfacesCross(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id);
+
 /// Of a query without a clearance.
 Truth truthOf(const radar::Scene& scene, const radar::Query& query);
 

@@ -212,7 +212,8 @@ Separation inWorld(const Moment<Real>& moment, const Real& way, const exact::Tri
   } else {
     out.point = rounded(exactly<Real>(a[0]) + Real{unscale} * way * unit + Real{unscale} * nearest.b);
   }
-  if (moment.least > Real{}) out.normal = rounded((Real{1} / length) * gap);
+  // The points tell, even where a plane across the line between them, tilted by rounding, no longer keeps apart all.
+  if (length > moment.error) out.normal = rounded((Real{1} / length) * gap);
   return out;
 }
 
@@ -258,9 +259,13 @@ Separation separationOf(const exact::Triangle& a, const exact::Triangle& b) {
   const int exponent = exponentOf(a, b, 0);
   const double scale = std::ldexp(1.0, -exponent);
   const Pair<double> pair{relative<double>(a, a[0], scale), relative<double>(b, a[0], scale), {}, 0, 0, 0};
-  Separation out = inWorld(momentAt(pair, 0.0), 0.0, a, b, pair.unit, std::ldexp(1.0, exponent));
-  const auto meets = std::isnan(out.normal[0]) ? exact::contact(a, b, {1, 0, 0}) : std::nullopt;
-  if (meets && exact::sign(meets->first) <= 0 && exact::sign(meets->last) >= 0) out.distance = 0;
+  const Moment<double> moment = momentAt(pair, 0.0);
+  Separation out = inWorld(moment, 0.0, a, b, pair.unit, std::ldexp(1.0, exponent));
+  if (moment.least > 0) return out;
+  const auto meets = exact::contact(a, b, {1, 0, 0});
+  if (!meets || exact::sign(meets->first) > 0 || exact::sign(meets->last) < 0) return out;
+  out.distance = 0;
+  out.normal.fill(kNan);
   return out;
 }
 

@@ -61,10 +61,12 @@ std::string validate(const Query& query, const Scene& scene, Mode mode) {
   }
   if (query.slack && *query.slack > 0) {
     const Box box = boxOf(scene.impl().meshes[query.mesh], query.worldFromMesh.m);
-    const double size = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
-    if (size > 0 && *query.slack > kMostSlack * std::max(size, query.clearance)) {
-      return "slack: expected at most a tenth of the sensor's size, which is " + std::to_string(size) + ", got " +
-             std::to_string(*query.slack);
+    const double size =
+        std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2], query.clearance});
+    // A bare point has no size to compare with.
+    if (size > 0 && *query.slack > kMostSlack * size) {
+      return "slack: expected at most a tenth of the sensor's size or of the clearance, the greater of which is " +
+             textOf(static_cast<float>(size)) + ", got " + textOf(*query.slack);
     }
   }
   if (!std::isfinite(query.clearance) || query.clearance < 0) {

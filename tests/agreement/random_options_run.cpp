@@ -136,7 +136,8 @@ struct Ending {
       }
       if (!query.motion) query.distance = ends[end];
       queries.push_back(query);
-      reaches.push_back(end < 2 && !query.motion);
+      // Faces that are flush do not block a motion that is too short to sink in.
+      reaches.push_back(end < 2 && !query.motion && !(query.ignoreLeaving && result.hi < 1e-9));
     }
   }
 };

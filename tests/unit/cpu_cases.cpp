@@ -50,3 +50,39 @@ TEST_CASE("objects that cross the sensor are skipped and listed, those that touc
   query.ignoreLeaving = false;  // then the box below, which is only touched, ends the motion
   REQUIRE(test::answer(sweeper, query).object == resting);
 }
+
+TEST_CASE("options that do not go together are refused by name") {
+  Scene scene;
+  const MeshId box = add(scene, tools::makeBox({1, 2, 3})), ball = add(scene, {"", {0, 0, 0}, {0, 0, 0}});
+  scene.addObject({box, at(5, 0, 0)});
+  const auto refusal = [&](Mode mode, MeshId mesh, const auto& change) {
+    Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 10};
+    change(query);
+    return validate(query, scene, mode);
+  };
+  CHECK_THAT(refusal(Mode::contact, box, [](Query& q) { q.anyHit = true, q.hits = 2; }),
+             test::StartsWith("hits: expected 1 with anyHit, got 2"));
+  CHECK_THAT(refusal(Mode::contact, box,
+                     [](Query& q) {
+                       q.motion = {{1, 0, 0}};
+                     }),
+             test::StartsWith("motion: expected no direction and no distance beside it"));
+  for (void (*change)(Query&) : {+[](Query& q) { q.ignoreLeaving = true; }, +[](Query& q) { q.skipOverlapping = true; },
+                                 +[](Query& q) { q.clearance = 0.1; }, +[](Query& q) { q.hits = kAllHits; }}) {
+    CHECK(refusal(Mode::contact, box, change) == "");
+    CHECK_THAT(refusal(Mode::sampled, box, change), test::StartsWith("mode: expected contact with ignoreLeaving"));
+  }
+  // A slack that would let shapes pass each other: of a box 3 long, and of a ball, which is a point with a clearance.
+  const auto slack = [&](MeshId mesh, double clearance, double much) {
+    return refusal(Mode::contact, mesh,
+                   [=](Query& q) { q.ignoreLeaving = true, q.clearance = clearance, q.slack = much; });
+  };
+  CHECK(slack(box, 0, 0.3) == "");
+  CHECK(
+      slack(box, 0, 0.31) ==
+      "slack: expected at most a tenth of the sensor's size or of the clearance, the greater of which is 3, got 0.31");
+  CHECK(slack(box, 4, 0.31) == "");
+  CHECK_THAT(slack(box, 0, 1e308), test::EndsWith("got 1e+308"));
+  CHECK(slack(ball, 0.25, 0.025) == "");
+  CHECK_THAT(slack(ball, 0.25, 1e308), test::EndsWith("which is 0.25, got 1e+308"));
+}

@@ -18,8 +18,10 @@ using exact::operator+, exact::operator-, exact::operator*;
 // Steps converge quadratically, or by a factor of two where the triangles pass each other just within the clearance.
 constexpr int kMostSteps = 200;
 // More digits may tell whether triangles are within the clearance if less of it than this is known: of positions, as
-// those of triangles a million times as large; of the distance, as that of needles, whose nearest points are not found.
-constexpr double kFine = 0x1p-27, kTight = 0x1p-20;
+// those of triangles a million times as large. Likewise if the bounds on the distance differ by more of the positions'
+// error than this: the nearest points are those of the least square, which tells them to some 2^-26 only, or those of
+// needles, which are not found.
+constexpr double kFine = 0x1p-27, kTight = 16;
 
 /// What the search needs of a number. It is written once, for doubles and for double-doubles.
 template <class Real>
@@ -143,7 +145,7 @@ std::optional<Found<Real>> search(const Pair<Real>& pair) {
     } else {
       // Rounding leaves open whether the triangles are within the clearance now. They are nearest to each other between
       // where they still approach and where they move apart.
-      found.isRough = found.isRough || m.error > Real{kFine} * clearance || m.most - m.least > Real{kTight} * clearance;
+      found.isRough = found.isRough || m.error > Real{kFine} * clearance || m.most - m.least > Real{kTight} * m.error;
       const bool isApproaching = m.rate + kRateError > Real{};
       if (isApproaching) approaching = std::max(approaching, t);
       if (!isApproaching) receding = std::min(receding, t);

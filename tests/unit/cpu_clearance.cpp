@@ -154,6 +154,20 @@ TEST_CASE("a point that passes through a triangle a billion times the clearance 
   CHECK((7.30117290387 < found->hi && found->hi < 7.3011738));
 }
 
+TEST_CASE("a bracket is as narrow as rounding allows though doubles do not tell which points are nearest") {
+  // Above the end of the last side when it comes within 1: the squares of the distances from there and from beside it
+  // are the same number.
+  const Vector point{1, -3, 1};
+  const exact::Triangle face{{{3, -0.5, 0.5}, {3, -0.5, 1.5}, {2, -0.5, 1.5}}};
+  const Query query{.direction = {2, 1.5, -0.5}};
+  const Motion motion(query);
+  const auto found = cpu::approach({point, point, point}, face, motion.direction, motion.unit, 1, 10, 0);
+  REQUIRE(found);
+  CHECK(found->lo <= std::sqrt(6.5));
+  CHECK(found->hi >= std::sqrt(6.5));
+  CHECK(found->hi - found->lo <= 1e-12);
+}
+
 TEST_CASE("a clearance works at every scale") {
   for (const double scale : {1e-160, 1e-30, 1e30, 1e150}) {
     const exact::Triangle a{{{0, 0, 0}, {0, scale, 0}, {0, 0, scale}}};

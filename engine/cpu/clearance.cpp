@@ -84,9 +84,19 @@ std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pa
   return found;
 }
 
+bool ClearanceContact::hasSunkIn(const exact::PlacedPair& pair) const {
+  if (!rule_.arePressed(pair, *motion_)) return false;
+  exact::EarliestContact touching(*motion_);
+  touching.considerPressed({}, pair);
+  return touching.found() && touching.overlaps();
+}
+
 void ClearanceContact::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
   if (isBefore(name)) return;
-  const auto found = approachOf(pair);
+  auto found = approachOf(pair);
+  if (query_.ignoreLeaving && query_.clearance <= 2 * rule_.slack && hasSunkIn(pair)) {
+    found = Approach{0, 0, separationOf(pair.a, pair.b)};
+  }
   if (!found) return;
   Near near{name, *found, found->lo};
   const bool matters = best_.empty() || near.lo < std::min(lo_, best_[0].lo) || near.precedes(best_[0]);

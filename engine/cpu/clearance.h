@@ -1,6 +1,7 @@
 // Finds when a query's sensor comes within its clearance of an object: first, or of each of the nearest objects.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -42,6 +43,9 @@ class ClearanceContact final : public PairVisitor {
     double latest() const { return approach.hi; }
   };
   std::optional<Approach> approachOf(const exact::PlacedPair& pair) const;
+  /// Whether faces that are pressed together touch at the start, though rounding may have let them pass each other by
+  /// the slack, and so by more than the clearance.
+  bool hasSunkIn(const exact::PlacedPair& pair) const;
   Result answer(const Near& near) const;
 
   const Query& query_;
@@ -64,6 +68,8 @@ class NearestAtStart {
   void beginObject(const PairRule& rule, const Motion& motion) {
     rule_ = rule;
     motion_ = &motion;
+    // What is pressed together may have sunk in.
+    if (query_.ignoreLeaving && name_.object == kNone) reach_ = std::max(reach_, 2 * rule.slack);
   }
   void consider(const exact::PairName& name, const exact::PlacedPair& pair);
   /// No pair at a greater distance, world units, matters.

@@ -66,6 +66,12 @@ void addOptions(Random& random, uint32_t options, const Scene& scene, uint32_t o
   if ((options & kMask) != 0) query.mask = random.chance(0.1) ? 0 : 1u << random.below(2);
   query.skipOverlapping = (options & kSkipOverlapping) != 0;
   query.ignoreLeaving = (options & kIgnoreLeaving) != 0;
+  // Alone, the next two options change nothing.
+  if ((options & kSlack) != 0 && (options & (kIgnoreLeaving | kSkipOverlapping)) == 0) {
+    query.ignoreLeaving = random.chance(0.5);
+    query.skipOverlapping = random.chance(0.3);
+  }
+  if ((options & kTolerance) != 0 && random.chance(0.7)) options |= kClearance;
   query.anyHit = (options & kDecide) != 0;
   if ((options & kHits) != 0) query.hits = random.chance(0.5) ? kAllHits : 2 + random.below(2);
   if ((options & kClearance) != 0) {

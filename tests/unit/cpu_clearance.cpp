@@ -5,7 +5,7 @@
 #include "exact/motion.h"
 #include "nearness_truth.h"
 #include "radar/cpu_sweeper.h"
-#include "soups.h"
+#include "scene_kinds.h"
 #include "support/catch.h"
 
 using namespace radar;
@@ -76,6 +76,52 @@ TEST_CASE("contact with a clearance begins when the surfaces come that near") {
   REQUIRE(counts.clear > 60);
   REQUIRE(counts.overlap > 10);
   REQUIRE(counts.undecided == 0);
+}
+
+TEST_CASE("a clearance of 1e-300 gives what none gives, where surfaces touch exactly") {
+  int contacts = 0;
+  for (const kinds::Kind& kind : kinds::all()) {
+    const std::string_view name = kind.name;
+    if (name != "integer lattices" && name != "boxes on a lattice" && name != "boxes pressed together") continue;
+    for (uint64_t seed = 0; seed < 60; ++seed) {
+      Random random(seed);
+      test::Case one;
+      kind.make(random, one);
+      CpuSweeper sweeper(one.scene, 1);
+      const std::vector<Result> plain = sweeper.run(one.queries).results;
+      for (Query& query : one.queries) query.clearance = 1e-300;
+      const std::vector<Result> near = sweeper.run(one.queries).results;
+      for (size_t i = 0; i < near.size(); ++i) {
+        INFO(name << ", scene " << seed << ", query " << i);
+        REQUIRE(near[i].status == plain[i].status);
+        if (near[i].status == Status::clear) continue;
+        ++contacts;
+        CHECK((near[i].lo <= plain[i].hi && plain[i].lo <= near[i].hi && near[i].hi <= one.queries[i].distance));
+        CHECK(near[i].hi - near[i].lo <= 1e-5);
+        // What is pressed together may have sunk in.
+        CHECK((near[i].gap <= one.queries[i].slack.value_or(0) + 1e-12 && std::isfinite(near[i].point[0])));
+        if (near[i].status == Status::overlap && !one.queries[i].ignoreLeaving)
+          CHECK((near[i].object == plain[i].object && near[i].triB == plain[i].triB));
+      }
+    }
+  }
+  CHECK(contacts > 500);
+}
+
+TEST_CASE("boxes pressed together block though they have sunk in by more than the clearance, within the slack") {
+  Scene scene;
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+  scene.addObject({box, at(0, 0, 0)});
+  Query query{.mesh = box, .worldFromMesh = at(0, 0, 1 - 5e-4), .direction = {0, 0, -1}, .distance = 0.5};
+  query.ignoreLeaving = true;
+  query.slack = 1e-3;
+  for (const double clearance : {0.0, 1e-300, 1e-4, 5e-4, 1e-3, 2e-3, 0.1}) {
+    query.clearance = clearance;
+    const Result result = CpuSweeper(scene, 1).run({&query, 1}).results[0];
+    CAPTURE(clearance);
+    CHECK(result.status == Status::overlap);
+    CHECK((result.object == 0 && result.gap == Approx(clearance > 0 ? 5e-4 : 0)));
+  }
 }
 
 TEST_CASE("a box stops at its clearance before a wall, an edge and a corner") {

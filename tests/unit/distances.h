@@ -46,8 +46,8 @@ Real acrossLines(const Point<Real>& a0, const Point<Real>& a1, const Point<Real>
   using std::abs;
   using std::sqrt;
   const Point<Real> x = a1 - a0, y = b1 - b0, r = b0 - a0, n = x.cross(y);
-  const Real nn = n.dot(n);
-  if (nn == 0) return kFar<Real>;
+  const Real nn = n.dot(n), parallel = 1000 * std::numeric_limits<Real>::epsilon();
+  if (nn <= parallel * parallel * x.squaredNorm() * y.squaredNorm()) return kFar<Real>;
   const Real s = r.cross(y).dot(n) / nn, t = r.cross(x).dot(n) / nn;
   return s >= 0 && s <= 1 && t >= 0 && t <= 1 ? Real(abs(r.dot(n)) / sqrt(nn)) : kFar<Real>;
 }

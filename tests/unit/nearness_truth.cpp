@@ -44,7 +44,8 @@ class Entry {
   void plane(const Point& p, const Point& x, const Point& y, bool isTriangle) {
     const Point n = x.cross(y);
     const Real square = n.squaredNorm(), speed = n.dot(unit_);
-    if (square == 0 || speed == 0) return;
+    // Spheres and cylinders are as good where the sides are nearly parallel.
+    if (square <= 1e-24L * x.squaredNorm() * y.squaredNorm() || speed == 0) return;
     for (const int side : {-1, 1}) {
       const Real t = (n.dot(p) + Real(side) * r_ * std::sqrt(square)) / speed;
       const Point at = t * unit_ - p;
@@ -157,6 +158,49 @@ NearTruth::NearTruth(const radar::Scene& scene, const radar::Query& query)
   }
 }
 
+/// A pair, its course, the slack and the clearance, in integers.
+struct NearTruth::Exact {
+  Faced a, b;
+  IntVec direction;
+  oracle::Course course;
+  Integer slack, clearance;
+
+  Exact(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id, const Corners& placedA,
+        const Corners& placedB) {
+    const double room = slackOf(scene, query, id);
+    std::vector<double> all{room, query.clearance};
+    for (const Corners* t : {&placedA, &placedB}) {
+      for (const Corner& c : *t) all.insert(all.end(), c.begin(), c.end());
+    }
+    const int scale = leastExponent(all.data(), all.size());
+    a = faced(scaled(placedA, scale), isMirrored(query.worldFromMesh));
+    b = faced(scaled(placedB, scale), isMirrored(scene.object(id).worldFromMesh));
+    const Corner way = directionPast(scene, query, id);
+    direction = scaled(way, leastExponent(way.data(), 3));
+    const bool step = isStep(scene, query);
+    const radar::Motion motion = step ? radar::Motion(way, {}) : radar::Motion(query);
+    course = courseOf(step ? way : motion.direction, motion.distance, motion.length, scale);
+    slack = scaled(room, scale);
+    clearance = scaled(query.clearance, scale);
+  }
+};
+
+/// By the definition in docs/exact.md, "With a clearance". Numbers that are rounded decide what they can.
+bool NearTruth::blocks(const Exact& exact, const Course& course, const Points& a, const Points& b, Real start) const {
+  const Real slack = slackOf(scene_, query_, course.object), clearance = query_.clearance, rounding = 1e-16L * size_;
+  if (start > slack + rounding && clearance > slack) {
+    const Real near = std::min(start, clearance) - slack;
+    if (firstWithin(a, b, course.unit, start, near - rounding) < kNever) return true;
+    if (firstWithin(a, b, course.unit, start, near + rounding) >= kNever) return false;
+  }
+  if (exact.clearance > exact.slack && start > 0) {
+    const Nearness nearness = nearnessOf(exact.a.corners, exact.b.corners, exact.direction);
+    if (nearness.start.num > exact.slack * exact.slack * nearness.start.den)
+      return comesNearer(nearness, exact.clearance, exact.slack);
+  }
+  return oracle::blocks(exact.a, exact.b, exact.course, exact.slack);
+}
+
 void NearTruth::add(radar::ObjectId id) {
   const radar::Object& object = scene_.object(id);
   const radar::MeshView sensor = scene_.mesh(query_.mesh), mesh = scene_.mesh(object.mesh);
@@ -169,7 +213,7 @@ void NearTruth::add(radar::ObjectId id) {
                       !step       ? 1
                       : whole > 0 ? end_ / whole
                                   : 0,
-                      std::min(Real(query_.tolerance.value_or(usual)), usual) + 1e-8L * size_};
+                      std::min(Real(query_.tolerance.value_or(usual)), usual) + 1e-11L * size_};
   std::vector<Corners> placedA, placedB;
   for (uint32_t i = 0; i < sensor.triangleCount(); ++i) placedA.push_back(corners(sensor, query_.worldFromMesh, i));
   for (uint32_t i = 0; i < mesh.triangleCount(); ++i) placedB.push_back(corners(mesh, object.worldFromMesh, i));
@@ -184,20 +228,36 @@ void NearTruth::add(radar::ObjectId id) {
   const Real clearance = query_.clearance;
   // A step may be one of no distance.
   const auto inTime = [&](const Real& after) { return after <= whole ? Real(after * course.rate) : kNever; };
+  // What is pressed together may have sunk in by the slack.
+  const Real slack = query_.ignoreLeaving ? Real(slackOf(scene_, query_, id)) : 0, reach = std::max(clearance, slack);
   for (uint32_t k = 0; k < b.size(); ++k) {
     for (uint32_t i = 0; i < a.size(); ++i) {
-      if (!mayComeWithin(a[i], b[k], unit, whole, clearance + room_)) continue;
+      if (!mayComeWithin(a[i], b[k], unit, whole, reach + room_)) continue;
       Pair pair{courses_.size(), k, i, a[i], b[k], distances::distance(a[i], b[k]), 0, 0, false};
       pair.early = inTime(firstWithin(a[i], b[k], unit, pair.start, clearance + room_));
-      if (pair.early > end_) continue;
+      const bool maySink = query_.ignoreLeaving && pair.start <= slack + room_;
+      if (pair.early > end_ && !maySink) continue;
       pair.touches = pair.start <= room_ && touchesNow(placedA[i], placedB[k]);
       if (pair.touches) pair.start = 0;
-      if (query_.ignoreLeaving && !blocks(placedA[i], placedB[k], course, a[i], b[k], pair.start)) {
-        ++passing_;
-        continue;
+      bool isPressed = false;
+      if (query_.ignoreLeaving) {
+        const Exact exact(scene_, query_, id, placedA[i], placedB[k]);
+        isPressed = maySink && arePressed(exact.a, exact.b, exact.course, exact.slack);
+        // Rounding may have left them a way to go.
+        const auto met = isPressed ? contact(exact.a.corners, exact.b.corners, exact.direction) : std::nullopt;
+        isPressed = isPressed && !(met && met->first.sign() > 0);
+        if (!isPressed && pair.early > end_) continue;
+        if (!isPressed && !blocks(exact, course, a[i], b[k], pair.start)) {
+          ++passing_;
+          continue;
+        }
       }
       pair.late = inTime(firstWithin(a[i], b[k], unit, pair.start, clearance - room_));
       if (pair.touches) pair.late = 0;
+      if (isPressed) {
+        pair.start = std::min(pair.start, clearance);
+        pair.early = pair.late = 0;
+      }
       // A tiny clearance: what touches is within it.
       if (clearance <= 10 * room_ && pair.late > end_ && length > 0) {
         const auto met = contact(placedA[i], placedB[k], directionPast(scene_, query_, id));
@@ -210,36 +270,6 @@ void NearTruth::add(radar::ObjectId id) {
     }
   }
   courses_.push_back(course);
-}
-
-/// By the definition in docs/exact.md, "With a clearance".
-bool NearTruth::blocks(const Corners& a, const Corners& b, const Course& course, const Points& placedA,
-                       const Points& placedB, Real start) const {
-  const Real slack = slackOf(scene_, query_, course.object), clearance = query_.clearance, rounding = 1e-16L * size_;
-  if (start > slack + rounding && clearance > slack) {
-    const Real near = std::min(start, clearance) - slack;
-    if (firstWithin(placedA, placedB, course.unit, start, near - rounding) < kNever) return true;
-    if (firstWithin(placedA, placedB, course.unit, start, near + rounding) >= kNever) return false;
-  }
-  const radar::Object& object = scene_.object(course.object);
-  const Corner direction = directionPast(scene_, query_, course.object);
-  const bool step = isStep(scene_, query_);
-  const radar::Motion motion = step ? radar::Motion(direction, {}) : radar::Motion(query_);
-  std::vector<double> all{static_cast<double>(slack), query_.clearance};
-  for (const Corners* t : {&a, &b}) {
-    for (const Corner& c : *t) all.insert(all.end(), c.begin(), c.end());
-  }
-  const int scale = leastExponent(all.data(), all.size());
-  const Integer room = scaled(static_cast<double>(slack), scale), within = scaled(query_.clearance, scale);
-  const IntTriangle wholeA = scaled(a, scale), wholeB = scaled(b, scale);
-  const IntVec way = scaled(direction, leastExponent(direction.data(), 3));
-  if (within > room && start > 0) {
-    const Nearness nearness = nearnessOf(wholeA, wholeB, way);
-    if (nearness.start.num > room * room * nearness.start.den) return comesNearer(nearness, within, room);
-  }
-  return oracle::blocks(faced(wholeA, isMirrored(query_.worldFromMesh)),
-                        faced(wholeB, isMirrored(object.worldFromMesh)),
-                        courseOf(step ? direction : motion.direction, motion.distance, motion.length, scale), room);
 }
 
 NearTruth::Span NearTruth::spanOf(radar::ObjectId id) const {
@@ -258,6 +288,13 @@ NearTruth::Span NearTruth::spanOf(radar::ObjectId id) const {
     if (pair.early <= until + span.tolerance) span.isLoose |= pair.late - pair.early > 0.1L * span.tolerance;
   }
   return span;
+}
+
+bool NearTruth::isOpen() const {
+  return std::ranges::any_of(pairs_, [&](const Pair& pair) {
+    const Course& course = courses_[pair.course];
+    return pair.late > end_ || pair.late - pair.early > 0.1L * course.tolerance * course.rate;
+  });
 }
 
 std::string NearTruth::faultOfOne(const radar::Result& result, radar::ObjectId among, bool isDecision) const {
@@ -321,7 +358,8 @@ std::string NearTruth::faultOfPlace(const radar::Result& result, const Span& spa
   Points a = named->a;
   for (Point& p : a) p += way * course.unit;
   const Real distance = distances::distance(a, named->b);
-  const Real most = query_.clearance + room_ + (isStart ? 0 : course.tolerance);
+  const Real sunk = query_.ignoreLeaving ? slackOf(scene_, query_, course.object) : 0;
+  const Real most = room_ + (isStart ? std::max(Real(query_.clearance), sunk) : query_.clearance + course.tolerance);
   if (std::abs(distance - gap) > off || gap > most) return "gap " + textOf(gap) + ", not " + textOf(distance);
   if (std::isnan(result.point[0])) return "no point";
   Point point = distances::pointOf<Real>(result.point) - origin_;

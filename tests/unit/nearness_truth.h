@@ -18,6 +18,8 @@ class NearTruth {
                       std::span<const radar::ObjectId> overlapping) const;
   /// How many pairs come within the clearance, but do not block.
   int passing() const { return passing_; }
+  /// Whether rounding decides if or when something comes within the clearance.
+  bool isOpen() const;
 
  private:
   using Real = long double;
@@ -35,9 +37,9 @@ class NearTruth {
   struct Pair {
     size_t course;
     uint32_t triB, triA;
-    Points a, b;  ///< relative to a corner of the sensor
-    Real start, early, late;
-    bool touches;  ///< at the start, exactly
+    Points a, b;              ///< relative to a corner of the sensor
+    Real start, early, late;  ///< at the start what is pressed together counts as within the clearance
+    bool touches;             ///< at the start, exactly
   };
   /// Of those of one object, or of all.
   struct Span {
@@ -46,9 +48,9 @@ class NearTruth {
     bool isLoose = false;  ///< rounding decides whether or when some pair comes within the clearance
   };
 
+  struct Exact;
   void add(radar::ObjectId id);
-  bool blocks(const Corners& a, const Corners& b, const Course& course, const Points& placedA, const Points& placedB,
-              Real start) const;
+  bool blocks(const Exact& exact, const Course& course, const Points& a, const Points& b, Real start) const;
   Span spanOf(radar::ObjectId id) const;
   std::string faultOfOne(const radar::Result& result, radar::ObjectId among, bool isDecision) const;
   std::string faultOfPlace(const radar::Result& result, const Span& span, radar::ObjectId among) const;

@@ -138,8 +138,10 @@ struct Ending {
       }
       if (!query.motion) query.distance = ends[end];
       queries.push_back(query);
-      // Faces that are flush do not block a motion that is too short to sink in.
-      reaches.push_back(end < 2 && !query.motion && !(query.ignoreLeaving && result.hi < 1e-9));
+      // Faces that are flush do not block a motion that is too short to sink in; a narrow bracket is one of rounding.
+      const bool isFlush = query.ignoreLeaving && result.hi < 1e-9;
+      const bool isNarrow = query.clearance > 0 && result.hi - result.lo < 1e-9;
+      reaches.push_back(end < 2 && !query.motion && !isFlush && !isNarrow);
     }
   }
 };

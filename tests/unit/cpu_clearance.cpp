@@ -148,29 +148,6 @@ TEST_CASE("a box stops at its clearance before a wall, an edge and a corner") {
   CHECK(move().status == Status::overlap);
 }
 
-TEST_CASE("with a clearance, contacts are listed for each object, and what does not block takes no part") {
-  Scene scene;
-  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
-  for (double x : {7.0, 5.0, 3.0}) scene.addObject({box, at(x, 0, 0)});
-  const ObjectId behind = scene.addObject({box, at(-1.25, 0, 0)});
-  Query query{.mesh = box, .direction = {1, 0, 0}, .distance = 10};
-  query.clearance = 0.5;
-  query.hits = kAllHits;
-  CpuSweeper sweeper(scene, 1);
-  const Answers all = sweeper.run({&query, 1});
-  REQUIRE(all.results[0].object == behind);
-  REQUIRE(all.lists[0].hits.size() == 4);
-  query.ignoreLeaving = true;
-  const Answers blocking = sweeper.run({&query, 1});
-  CHECK(blocking.results[0].object == 2);
-  CHECK(blocking.results[0].t == Approx(1.5).epsilon(1e-6));
-  const std::vector<Result>& hits = blocking.lists[0].hits;
-  REQUIRE(hits.size() == 3);
-  CHECK((hits[0].object == 2 && hits[1].object == 1 && hits[2].object == 0));
-  query.hits = 2;
-  CHECK(sweeper.run({&query, 1}).lists[0].hits.size() == 2);
-}
-
 TEST_CASE("needles that pass by a hair are not certified as within a smaller clearance") {
   // Each 1e8 times as long as wide; 2.2e-9 apart.
   const exact::Triangle a{{{0x1.aa51c62c6ad3ep-5, 0x1.3897dc1b0c184p-1, -0x1.3e93f252e8b33p-1},

@@ -183,17 +183,25 @@ struct NearTruth::Exact {
     slack = scaled(room, scale);
     clearance = scaled(query.clearance, scale);
   }
+
+  /// Whether they are pressed together, and rounding has not left them a way to go.
+  bool areSunk() const {
+    if (!arePressed(a, b, course, slack)) return false;
+    const auto met = contact(a.corners, b.corners, direction);
+    return !met || met->first.sign() <= 0;
+  }
 };
 
 /// By the definition in docs/exact.md, "With a clearance". Numbers that are rounded decide what they can.
-bool NearTruth::blocks(const Exact& exact, const Course& course, const Points& a, const Points& b, Real start) const {
+bool NearTruth::blocks(const Corners& a, const Corners& b, const Course& course, const Pair& pair) const {
   const Real slack = slackOf(scene_, query_, course.object), clearance = query_.clearance, rounding = 1e-16L * size_;
-  if (start > slack + rounding && clearance > slack) {
-    const Real near = std::min(start, clearance) - slack;
-    if (firstWithin(a, b, course.unit, start, near - rounding) < kNever) return true;
-    if (firstWithin(a, b, course.unit, start, near + rounding) >= kNever) return false;
+  if (pair.start > slack + rounding && clearance > slack) {
+    const Real near = std::min(pair.start, clearance) - slack;
+    if (firstWithin(pair.a, pair.b, course.unit, pair.start, near - rounding) < kNever) return true;
+    if (firstWithin(pair.a, pair.b, course.unit, pair.start, near + rounding) >= kNever) return false;
   }
-  if (exact.clearance > exact.slack && start > 0) {
+  const Exact exact(scene_, query_, course.object, a, b);
+  if (exact.clearance > exact.slack && pair.start > 0) {
     const Nearness nearness = nearnessOf(exact.a.corners, exact.b.corners, exact.direction);
     if (nearness.start.num > exact.slack * exact.slack * nearness.start.den)
       return comesNearer(nearness, exact.clearance, exact.slack);
@@ -239,18 +247,11 @@ void NearTruth::add(radar::ObjectId id) {
       if (pair.early > end_ && !maySink) continue;
       pair.touches = pair.start <= room_ && touchesNow(placedA[i], placedB[k]);
       if (pair.touches) pair.start = 0;
-      bool isPressed = false;
-      if (query_.ignoreLeaving) {
-        const Exact exact(scene_, query_, id, placedA[i], placedB[k]);
-        isPressed = maySink && arePressed(exact.a, exact.b, exact.course, exact.slack);
-        // Rounding may have left them a way to go.
-        const auto met = isPressed ? contact(exact.a.corners, exact.b.corners, exact.direction) : std::nullopt;
-        isPressed = isPressed && !(met && met->first.sign() > 0);
-        if (!isPressed && pair.early > end_) continue;
-        if (!isPressed && !blocks(exact, course, a[i], b[k], pair.start)) {
-          ++passing_;
-          continue;
-        }
+      const bool isPressed = maySink && Exact(scene_, query_, id, placedA[i], placedB[k]).areSunk();
+      if (!isPressed && pair.early > end_) continue;
+      if (query_.ignoreLeaving && !isPressed && !blocks(placedA[i], placedB[k], course, pair)) {
+        ++passing_;
+        continue;
       }
       pair.late = inTime(firstWithin(a[i], b[k], unit, pair.start, clearance - room_));
       if (pair.touches) pair.late = 0;

@@ -50,7 +50,7 @@ class NearTruth {
 
   struct Exact;
   void add(radar::ObjectId id);
-  bool blocks(const Exact& exact, const Course& course, const Points& a, const Points& b, Real start) const;
+  bool blocks(const Corners& a, const Corners& b, const Course& course, const Pair& pair) const;
   Span spanOf(radar::ObjectId id) const;
   std::string faultOfOne(const radar::Result& result, radar::ObjectId among, bool isDecision) const;
   std::string faultOfPlace(const radar::Result& result, const Span& span, radar::ObjectId among) const;

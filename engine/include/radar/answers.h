@@ -48,9 +48,9 @@ struct RADAR_API Result {
   /// along the line between the nearest points, and is absent where they touch.
   /// Mode sampled knows of the pairs that it has found.
   std::array<double, 3> normal;
-  /// How far apart the surfaces are at t, world units: of the named pair, the distance from `point` to the sensor's
-  /// nearest point, which is point + gap * normal. 0 without a clearance; with one, up to that much, and at the start
-  /// the least of all pairs that count. Off by rounding.
+  /// World units: how far apart the named pair is at t, or when it comes within the clearance, if another has lowered
+  /// lo: from `point` to the sensor's nearest point, point + gap * normal. 0 without a clearance; with one, up to that
+  /// much and the tolerance, and at the start the least of all pairs that count. Off by rounding.
   double gap;
   double paperMinL;  ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();

@@ -138,10 +138,12 @@ struct Ending {
       }
       if (!query.motion) query.distance = ends[end];
       queries.push_back(query);
-      // Faces that are flush do not block a motion that is too short to sink in; a narrow bracket is one of rounding.
-      const bool isFlush = query.ignoreLeaving && result.hi < 1e-9;
-      const bool isNarrow = query.clearance > 0 && result.hi - result.lo < 1e-9;
-      reaches.push_back(end < 2 && !query.motion && !isFlush && !isNarrow);
+      // Faces that are flush do not block a motion that is too short to sink in. Only a bracket of the tolerance ends
+      // where the contact is certain to any search: others are as narrow as rounding, or as wide as it makes them.
+      const bool isFlush = query.ignoreLeaving && (query.slack || result.hi < 1e-9);
+      const double width = result.hi - result.lo;
+      const bool isRounding = query.clearance > 0 && (width < 1e-9 || width > 1e-5);
+      reaches.push_back(end < 2 && !query.motion && !isFlush && !isRounding);
     }
   }
 };

@@ -92,40 +92,6 @@ TEST_CASE("the bracket of a sweep whose D is the least number above 0 contains t
   }
 }
 
-TEST_CASE("objects that leave, cross, come near or are among the nearest are judged by the relative motion") {
-  Scene scene;
-  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
-  const ObjectId below = scene.addObject({.mesh = box, .motion = {0, 0, 3}});
-  const ObjectId beside = scene.addObject({.mesh = box, .worldFromMesh = at(6, 0, 2), .motion = {-3, 0, 3}});
-  CpuSweeper sweeper(scene, 1);
-  // Rests on the lower box.
-  Query query{.mesh = box, .worldFromMesh = at(0, 0, 2), .motion = Motion3{0, 0, 4}, .ignoreLeaving = true};
-  CHECK(test::answer(sweeper, query).status == Status::clear);
-  query.motion = Motion3{0, 0, 2};  // the lower box is faster
-  CHECK(test::answer(sweeper, query).object == below);
-  query.motion = Motion3{0, 0, 3};  // as fast: neither leaves nor presses
-  CHECK(test::answer(sweeper, query).status == Status::clear);
-  query.motion = Motion3{3, 0, 3};  // slides off it, into the other
-  CHECK(test::answer(sweeper, query).status == Status::hit);
-  CHECK(test::answer(sweeper, query).object == beside);
-  CHECK(test::answer(sweeper, query).t == Approx(4. / 6));
-  query.ignoreLeaving = false;
-  query.hits = kAllHits;
-  const std::vector<Result> hits = sweeper.run({&query, 1}).lists[0].hits;
-  REQUIRE(hits.size() == 2);
-  CHECK((hits[0].object == below && hits[1].object == beside));
-  query.skipOverlapping = true;
-  query.worldFromMesh = at(0.3, 0.2, 1.5);
-  const Answers skipping = sweeper.run({&query, 1});
-  CHECK(skipping.results[0].object == beside);
-  CHECK(skipping.lists[0].overlapping == std::vector<ObjectId>{below});
-  Query near{.mesh = box, .worldFromMesh = at(0, 0, 9), .exclude = {beside}, .motion = Motion3{}, .clearance = 5};
-  const Result approached = test::answer(sweeper, near);
-  CHECK(approached.object == below);
-  CHECK((approached.lo <= 2. / 3 && approached.hi >= 2. / 3 && approached.hi - approached.lo < 1e-5));
-  CHECK(approached.point[2] == Approx(3).margin(1e-4));
-}
-
 TEST_CASE("queries and objects that break the contract of a step are refused by name") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({2, 2, 2}));

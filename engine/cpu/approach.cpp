@@ -107,7 +107,7 @@ struct Found {
 };
 
 template <class Real>
-std::optional<Found<Real>> search(const Pair<Real>& pair) {
+std::optional<Found<Real>> search(const Pair<Real>& pair, Vector* across = nullptr) {
   constexpr Real kNever{Of<Real>::never}, kHalf{0.5};
   // Of a rate: of two unit vectors and their inner product.
   constexpr Real kRateError{64 * Of<Real>::unit};
@@ -136,7 +136,11 @@ std::optional<Found<Real>> search(const Pair<Real>& pair) {
       } else {
         return found;
       }
-      if (found.lo > pair.distance || found.lo >= end) return std::nullopt;
+      if (found.lo > pair.distance || found.lo >= end) {
+        const Vector gap = rounded(m.nearest.a - m.nearest.b);
+        if (across != nullptr && largest(gap) > 0x1p-500) *across = scaled(1 / largest(gap), gap);
+        return std::nullopt;
+      }
       step = least;
       const Real next = std::min({found.lo + step, kHalf * found.lo + kHalf * end, pair.distance});
       // A motion along the plane leaves no room for another step.
@@ -271,8 +275,22 @@ Separation separationOf(const exact::Triangle& a, const exact::Triangle& b) {
   return out;
 }
 
+bool stayApart(const exact::Triangle& a, const exact::Triangle& b, const Vector& normal, const Vector& displacement,
+               double clearance) {
+  double low = 0, high = -std::numeric_limits<double>::infinity(), size = radar::norm1(displacement);
+  for (size_t i = 0; i < 3; ++i) {
+    const Vector ofA = a[i] - a[0], ofB = b[i] - a[0];
+    low = std::min(low, radar::dot(normal, ofA));
+    high = std::max(high, radar::dot(normal, ofB));
+    size = std::max({size, radar::norm1(ofA), radar::norm1(ofB)});
+  }
+  const double gap = low + std::min(radar::dot(normal, displacement), 0.0) - high;
+  return gap > (1 + 0x1p-20) * std::sqrt(radar::dot(normal, normal)) * clearance + 64 * kUnit * size;
+}
+
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
-                                 const Vector& unit, double clearance, double distance, double tolerance) {
+                                 const Vector& unit, double clearance, double distance, double tolerance,
+                                 Vector* across) {
   const int exponent = exponentOf(a, b, clearance);
   const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
   const Pair<double> rough{relative<double>(a, a[0], scale),
@@ -286,7 +304,7 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
     if (!std::isinf(out.hi)) out.hi = std::min(out.hi, distance);
     return out;
   };
-  const auto found = search(rough);
+  const auto found = search(rough, across);
   if (!found) return std::nullopt;
   if (!found->isRough || found->hi - found->lo <= rough.tolerance)
     return withinWay(inWorld(*found, a, b, unit, unscale));

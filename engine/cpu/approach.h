@@ -19,6 +19,11 @@ Separation separationOf(const exact::Triangle& a, const exact::Triangle& b);
 /// Whether they certainly are within the clearance once a has moved by `displacement`.
 bool certainlyWithin(const exact::Triangle& a, const exact::Triangle& b, const Vector& displacement, double clearance);
 
+/// Whether their extents along `normal`, of length 1 to 2, certainly keep them farther apart than the clearance until
+/// a has moved by `displacement`.
+bool stayApart(const exact::Triangle& a, const exact::Triangle& b, const Vector& normal, const Vector& displacement,
+               double clearance);
+
 struct Approach {
   double lo;        ///< world units: the triangles are farther apart before this
   double hi;        ///< they certainly are within the distance by this; infinite if rounding leaves it open
@@ -26,9 +31,11 @@ struct Approach {
 };
 
 /// When triangle a, moved by t along `direction`, comes within `clearance` > 0 of b; none if it certainly does not for
-/// 0 <= t <= `distance`. hi - lo is at most `tolerance`, if rounding allows. `unit` is Motion::unit.
+/// 0 <= t <= `distance`: then `across` is set along their gap at some t. hi - lo is at most `tolerance`, if
+/// rounding allows. `unit` is Motion::unit.
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
-                                 const Vector& unit, double clearance, double distance, double tolerance);
+                                 const Vector& unit, double clearance, double distance, double tolerance,
+                                 Vector* across = nullptr);
 
 /// How exact::blocksWithin decides, as far as double-doubles tell.
 enum class Nearing {

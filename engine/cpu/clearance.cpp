@@ -49,10 +49,10 @@ bool ClearanceContact::Near::precedes(const Near& other) const {
   return name < other.name;
 }
 
-std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pair) const {
+std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pair, Vector* across) const {
   const Motion& motion = *motion_;
   auto found = approach(pair.a, pair.b, motion.direction, motion.unit, query_.clearance,
-                        motion.wayUntil(motion.distance), tolerance_);
+                        motion.wayUntil(motion.distance), tolerance_, across);
   if (!found) return found;
   if (motion.isStep) {
     const auto timeOf = [&](double way, double rounding) {
@@ -93,7 +93,10 @@ bool ClearanceContact::hasSunkIn(const exact::PlacedPair& pair) const {
 
 void ClearanceContact::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
   if (isBefore(name)) return;
-  auto found = approachOf(pair);
+  const double reach = std::max(query_.clearance, query_.ignoreLeaving ? 2 * rule_.slack : 0);
+  const Vector displacement = scaled(motion_->wayUntil(latest_), motion_->unit);
+  if (across_ != Vector{} && stayApart(pair.a, pair.b, across_, displacement, reach)) return;
+  auto found = approachOf(pair, best_.empty() ? &across_ : nullptr);
   if (query_.ignoreLeaving && query_.clearance <= 2 * rule_.slack && hasSunkIn(pair)) {
     found = Approach{0, 0, separationOf(pair.a, pair.b)};
   }

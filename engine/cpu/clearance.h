@@ -42,7 +42,8 @@ class ClearanceContact final : public PairVisitor {
     bool precedes(const Near& other) const;
     double latest() const { return approach.hi; }
   };
-  std::optional<Approach> approachOf(const exact::PlacedPair& pair) const;
+  /// `across`: of cpu::approach.
+  std::optional<Approach> approachOf(const exact::PlacedPair& pair, Vector* across) const;
   /// Whether faces that are pressed together touch at the start, though rounding may have let them pass each other by
   /// the slack, and so by more than the clearance.
   bool hasSunkIn(const exact::PlacedPair& pair) const;

@@ -102,7 +102,7 @@ void ClearanceContact::consider(const exact::PairName& name, const exact::Placed
   }
   if (!found) return;
   Near near{name, *found, found->lo};
-  const bool matters = best_.empty() || near.lo < std::min(lo_, best_[0].lo) || near.precedes(best_[0]);
+  const bool matters = best_.empty() || near.lo < best_[0].lo || near.precedes(best_[0]);
   if (!matters || (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance))) return;
   lo_ = std::min(lo_, near.lo);
   if (best_.empty()) {

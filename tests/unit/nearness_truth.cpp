@@ -380,9 +380,9 @@ std::string NearTruth::faultOfList(std::span<const radar::Result> hits) const {
     if (hit.object == radar::kNone || isListed.at(hit.object)) return "an object that is none, or listed twice";
     isListed[hit.object] = true;
     if (std::string fault = faultOfOne(hit, hit.object, false); !fault.empty()) return "contact: " + fault;
-    // Of a step without a distance fractions tell.
-    const auto key = [&](const radar::Result& r) { return std::pair(end_ > 0 ? r.lo : r.fraction, r.object); };
-    const bool isOrdered = i == 0 || key(hits[i - 1]) < key(hit);
+    const auto key = [](const radar::Result& r) { return std::pair(r.lo, r.object); };
+    // Those of a step without a distance are all at 0, in the order of the fractions.
+    const bool isOrdered = i == 0 || key(hits[i - 1]) < key(hit) || (end_ == 0 && isStep(scene_, query_));
     if (!isOrdered) return "contacts in disorder";
     if (hit.status == Status::undecided) continue;
     ++certain;

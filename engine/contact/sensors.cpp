@@ -81,7 +81,8 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   // a sixteenth of either placement's error.
   if (query.ignoreLeaving && !query.slack) stated.slackShare = 0.125f;
   stated.firstExcluded = static_cast<uint32_t>(batch.excluded.size());
-  batch.excluded.insert(batch.excluded.end(), query.exclude.begin(), query.exclude.end());
+  // Who is searched alone takes part.
+  if (object == kNone) batch.excluded.insert(batch.excluded.end(), query.exclude.begin(), query.exclude.end());
   std::sort(batch.excluded.begin() + stated.firstExcluded, batch.excluded.end());
   stated.endExcluded = static_cast<uint32_t>(batch.excluded.size());
 

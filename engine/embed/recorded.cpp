@@ -27,8 +27,9 @@ Result outOfRange() {
 // the device knows how large the sensor is.
 std::vector<ObjectId> mayReach(const Query& query, const Scene::Impl& scene, const HostGeometryPass& geometry) {
   std::vector<ObjectId> objects = inReach(query, scene, scene.objectTree());
+  const Participants participants(query, scene);
   const auto add = [&](ObjectId id) {
-    if (scene.objects[id].used && takesPart(query, scene, id)) objects.push_back(id);
+    if (scene.objects[id].used && participants.contain(id)) objects.push_back(id);
   };
   if (geometry.isUnbounded(query.mesh)) {
     for (ObjectId id = 0; id < scene.objects.size(); ++id) add(id);

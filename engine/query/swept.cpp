@@ -4,6 +4,26 @@
 
 namespace radar {
 
+namespace {
+
+// Longer lists are marked, shorter ones are looked through.
+constexpr size_t kFew = 16;
+
+}  // namespace
+
+Participants::Participants(const Query& query, const Scene::Impl& scene) : query_(query), scene_(scene) {
+  if (query.exclude.size() <= kFew) return;
+  thread_local std::vector<bool> marks;
+  if (marks.size() < scene.objects.size()) marks.resize(scene.objects.size());
+  for (const ObjectId id : query.exclude) marks[id] = true;
+  marks_ = &marks;
+}
+
+Participants::~Participants() {
+  if (marks_ == nullptr) return;
+  for (const ObjectId id : query_.exclude) (*marks_)[id] = false;
+}
+
 namespace detail {
 
 OpenNode* openNodes(size_t count) {

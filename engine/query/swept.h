@@ -9,11 +9,28 @@
 
 namespace radar {
 
-/// Whether the object shares a mask bit with the query, which does not exclude it.
-inline bool takesPart(const Query& query, const Scene::Impl& scene, ObjectId id) {
-  return (scene.objects[id].object.mask & query.mask) != 0 &&
-         std::find(query.exclude.begin(), query.exclude.end(), id) == query.exclude.end();
-}
+/// The objects that share a mask bit with a query, which does not exclude them. On a thread there is one at a time.
+class Participants {
+ public:
+  /// Both outlive this. The excluded objects exist.
+  Participants(const Query& query, const Scene::Impl& scene);
+  ~Participants();
+  Participants(const Participants&) = delete;
+  Participants& operator=(const Participants&) = delete;
+
+  bool contain(ObjectId id) const {
+    return (scene_.objects[id].object.mask & query_.mask) != 0 && !(marks_ != nullptr ? (*marks_)[id] : isListed(id));
+  }
+
+ private:
+  bool isListed(ObjectId id) const {
+    return std::find(query_.exclude.begin(), query_.exclude.end(), id) != query_.exclude.end();
+  }
+
+  const Query& query_;
+  const Scene::Impl& scene_;
+  std::vector<bool>* marks_ = nullptr;  // by object: of this thread, so that a list costs no more than its length
+};
 
 /// The sensor's motion past an object in a step, or past all objects in a sweep.
 Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object = kNone);
@@ -50,9 +67,10 @@ inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, 
 template <class Wants, class Visit>
 void walk(const Query& query, const Motion& motion, const Scene::Impl& scene, const ObjectTree& tree,
           const Wants& wants, const Visit& visit) {
+  const Participants participants(query, scene);
   if (!tree.inRange()) {
     for (ObjectId id = 0; id < scene.objects.size(); ++id) {
-      if (scene.objects[id].used && wants(0.0) && takesPart(query, scene, id)) visit(id);
+      if (scene.objects[id].used && wants(0.0) && participants.contain(id)) visit(id);
     }
     return;
   }
@@ -71,7 +89,7 @@ void walk(const Query& query, const Motion& motion, const Scene::Impl& scene, co
     if (!wants(next.near)) continue;
     if ((next.link & gpu::kLinkLeaf) != 0) {
       const ObjectId id = next.link & gpu::kLinkItem;
-      if (takesPart(query, scene, id)) visit(id);
+      if (participants.contain(id)) visit(id);
       continue;
     }
     const gpu::ObjectNode &left = nodes[next.link], &right = nodes[next.link + 1];

@@ -164,6 +164,7 @@ bool Planner::mayReach(const Box& world) const {
 // out, on which the depth of the pictures depends.
 std::vector<ObjectId> Planner::objectsInPrism() const {
   const ObjectTree& tree = scene_.objectTree();
+  const Participants participants(query_, scene_);
   std::vector<ObjectId> found;
   thread_local std::vector<uint32_t> open;
   open.assign(tree.nodes().empty() ? 0 : 1, 0);
@@ -175,7 +176,7 @@ std::vector<ObjectId> Planner::objectsInPrism() const {
     if (!mayReach(isLeaf ? objectBox(scene_, item) : worldBox(node, tree.anchor()))) continue;
     if (!isLeaf) {
       open.insert(open.end(), {item, item + 1});
-    } else if (takesPart(query_, scene_, item)) {
+    } else if (participants.contain(item)) {
       found.push_back(item);
     }
   }
@@ -353,9 +354,10 @@ void Planner::addReached() {
 // Adds objects out of reach. Those that meet the visible box are left out: the scopes reach farther than the prism by a
 // rounding error, which must not change the answer.
 void Planner::addOthers() {
+  const Participants participants(query_, scene_);
   for (ObjectId id = 0; id < scene_.objects.size(); ++id) {
     const Object& object = scene_.objects[id].object;
-    if (!scene_.objects[id].used || !takesPart(query_, scene_, id)) continue;
+    if (!scene_.objects[id].used || !participants.contain(id)) continue;
     Placed placed = framed(id, object.mesh, object.worldFromMesh);
     const Box box = boxOfLocal(scene_.meshes[object.mesh], placed.frameFromMesh);
     if (overlap(box, visible_, 2 * placed.error)) continue;

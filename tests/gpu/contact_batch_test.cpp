@@ -7,6 +7,8 @@
 #include "support/test_device.h"
 #include "support/world.h"
 #include "workloads/generate.h"
+#include "workloads/random.h"
+#include "workloads/shapes.h"
 
 namespace {
 
@@ -47,6 +49,39 @@ TEST_CASE("a batch of any size gives the same bits as one query at a time, in bo
   CHECK(differenceOf(onCpu.results, single) == "");
   CHECK(onCpu.stats.cpuQueries == asked.queries.size());
   CHECK(onCpu.stats.submissions == 0);
+}
+
+TEST_CASE("a query leaves out exactly the objects that it excludes, however many, and the next one does not") {
+  constexpr uint32_t kObjects = 60;
+  Scene scene;
+  const MeshId ball = add(scene, tools::makeUvSphere(6, 12));
+  for (uint32_t i = 0; i < kObjects; ++i) scene.addObject({ball, at(3 * i, 0.1 * (i % 3), 5), ~0u});
+  const uint32_t cpuBatch = GENERATE(kOnDevice, kOnCpu);
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = cpuBatch});
+  tools::Random random(19);
+  std::vector<Query> queries;
+  std::vector<std::vector<ObjectId>> left;
+  for (const uint32_t count : {0u, 1u, 16u, 17u, 40u, 0u, 59u, 200u, 3u}) {
+    Query query{.mesh = ball, .worldFromMesh = at(-4, 0, 5), .direction = {1, 0, 0}, .distance = 4 * kObjects};
+    for (uint32_t i = 0; i < count; ++i) query.exclude.push_back(random.below(kObjects));  // some of them twice
+    std::vector<ObjectId>& rest = left.emplace_back();
+    for (ObjectId id = 0; id < kObjects; ++id) {
+      if (std::ranges::find(query.exclude, id) == query.exclude.end()) rest.push_back(id);
+    }
+    queries.push_back(query);
+  }
+  const auto firstOf = [](const std::vector<ObjectId>& rest) { return rest.empty() ? kNone : rest.front(); };
+  for (const Mode mode : {Mode::contact, Mode::sampled}) {
+    const std::vector<Result> results = sweeper.run(queries, mode).results;
+    for (size_t i = 0; i < queries.size(); ++i) CHECK(results[i].object == firstOf(left[i]));
+  }
+  for (Query& query : queries) query.hits = kAllHits;
+  const Answers all = sweeper.run(queries);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    std::vector<ObjectId> found;
+    for (const Result& hit : all.lists[i].hits) found.push_back(hit.object);
+    CHECK(found == left[i]);
+  }
 }
 
 TEST_CASE("in mode contact queries over soups have the same bits alone, in a batch, in reverse order and on the CPU",

@@ -24,7 +24,7 @@ unsigned edgeSpan(int from, int sideOfFrom, int sideOfTo) {
   return (sideOfTo != 0 ? 1u << from : 0) | (sideOfFrom != 0 ? 1u << next(from) : 0);
 }
 
-/// Keeps the first and the last of the events added. If several events share an end, the choice depends on the events
+/// Finds the first and the last of the events added. If several events share an end, the choice depends on the events
 /// only, not on their order; the span of the end is that of all.
 class Ends {
  public:
@@ -35,18 +35,19 @@ class Ends {
     hasRatio_[own] = false;
     between_ = between_ | span;
     if (own == 0) {
-      atFirst_ = atLast_ = span;
+      atFirst_ = span;
       return;
     }
-    const int first = order(own, first_), last = isPoint_ ? first : order(own, last_);
+    const int first = order(own, first_);
     isPoint_ = isPoint_ && first == 0;
     if (first < 0 || (first == 0 && precedes(event, events_[first_]))) first_ = own;
-    if (last > 0 || (last == 0 && precedes(event, events_[last_]))) last_ = own;
     if (first <= 0) atFirst_ = first < 0 ? span : atFirst_ | span;
-    if (last >= 0) atLast_ = last > 0 ? span : atLast_ | span;
   }
-  std::optional<Interval> interval() const {
+  std::optional<Interval> interval(Ahead ahead) {
     if (count_ == 0) return std::nullopt;
+    last_ = first_;
+    atLast_ = atFirst_;
+    if (!isPoint_ && (ahead == Ahead::whole || sign(events_[first_]) <= 0)) findLast();
     // The points of contact at any parameter are a polytope, with the events at its corners. Those at a parameter
     // between the ends include points inside it, which all corners span.
     const Span& own = spans_[first_];
@@ -59,6 +60,15 @@ class Ends {
     if (!hasRatio_[i]) ratios_[i] = ratio(events_[i]);
     hasRatio_[i] = true;
     return ratios_[i];
+  }
+  void findLast() {
+    last_ = 0;
+    atLast_ = spans_[0];
+    for (int own = 1; own < count_; ++own) {
+      const int last = order(own, last_);
+      if (last > 0 || (last == 0 && precedes(events_[own], events_[last_]))) last_ = own;
+      if (last >= 0) atLast_ = last > 0 ? spans_[own] : atLast_ | spans_[own];
+    }
   }
   int order(int p, int q) {
     if (const auto sure = compareRoughly(events_[p], events_[q])) return *sure;
@@ -184,12 +194,12 @@ void addPlanar(const Triangle& a, const Triangle& b, const Vector& direction, En
 
 }  // namespace
 
-std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vector& direction) {
+std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vector& direction, Ahead ahead) {
   const Signs signs(a, b, direction);
   Ends ends;
   if (signs.allZero) {
     addPlanar(a, b, direction, ends);
-    return ends.interval();
+    return ends.interval(ahead);
   }
   // These include every basic solution of the linear programme: least s at which a point of a, moved, is a point of b.
   for (int i = 0; i < 3; ++i) {
@@ -200,7 +210,7 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vect
       ends.add(edgeEdge(direction, a[i], a[next(i)], b[k], b[next(k)]), signs.edgesSpan(i, k));
     }
   }
-  return ends.interval();
+  return ends.interval(ahead);
 }
 
 Features Span::features() const {

@@ -73,8 +73,13 @@ struct Interval {
   bool isSharp;
 };
 
+/// What is to be known of an interval that begins after the start, at s > 0: all, or only its beginning, which costs
+/// less; `last`, atLast are then `first`, atFirst.
+enum class Ahead { whole, beginning };
+
 /// The interval of contact; none if the triangles do not meet for any s. `direction` is not zero.
-std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vector& direction);
+std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vector& direction,
+                                Ahead ahead = Ahead::whole);
 
 /// -1, 0 or 1: the sign of the event's parameter.
 int sign(const Event& event);

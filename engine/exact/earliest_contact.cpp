@@ -11,7 +11,7 @@
 namespace radar::exact {
 
 std::optional<EarliestContact::Beginning> EarliestContact::beginningOf(const PlacedPair& pair) const {
-  const auto interval = contact(pair.a, pair.b, motion_->direction);
+  const auto interval = contact(pair.a, pair.b, motion_->direction, Ahead::beginning);
   if (!interval) return std::nullopt;
   const int last = sign(interval->last);
   if (last < 0) return std::nullopt;

@@ -116,6 +116,23 @@ bool isSame(const Event& p, const Event& q) {
          p.y1 == q.y1 && p.direction == q.direction;
 }
 
+bool isAcross(const Event& e, int axis) {
+  return e.x0[axis] == e.x1[axis] && e.y0[axis] == e.y1[axis];
+}
+
+/// Compares parameters of features that lie across one axis: there, the determinants' quotient is that of the gap's and
+/// the direction's components. Shapes of boxes touch in very many such events at once.
+std::optional<int> compareAcross(const Event& p, const Event& q) {
+  if (p.direction != q.direction) return std::nullopt;
+  int axis = 0;
+  while (axis < 3 && !(isAcross(p, axis) && isAcross(q, axis))) ++axis;
+  if (axis == 3) return std::nullopt;
+  const DoubleDouble u = difference(p.to[axis], p.from[axis]), v = difference(q.to[axis], q.from[axis]);
+  if (!std::isfinite(u.low) || !std::isfinite(v.low)) return std::nullopt;
+  const int order = u.high != v.high ? signOf(u.high - v.high) : signOf(u.low - v.low);
+  return p.direction[axis] > 0 ? order : -order;
+}
+
 }  // namespace
 
 int sign(const Event& e) {
@@ -141,6 +158,7 @@ std::optional<int> compareRoughly(const Event& p, const Event& q) {
   const double apart = p.s - q.s, margin = (1 + 8 * kUnit) * (p.error + q.error);
   if (std::abs(apart) > margin) return signOf(apart);
   if (isSame(p, q)) return 0;
+  if (const auto order = compareAcross(p, q)) return order;
   // Equal estimates are most likely a tie, which only exact arithmetic can decide.
   if (apart == 0) return std::nullopt;
   const FineParameter fp = fineParameter(p), fq = fineParameter(q);

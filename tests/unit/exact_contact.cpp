@@ -114,6 +114,13 @@ void check(const Triangle& a, const Triangle& b, const Vector& direction, bool f
     }
   }
   REQUIRE(compare(ours->first, ours->last) == oracle::compare(truth->first, truth->last));
+  const auto begun = contact(a, b, direction, Ahead::beginning);
+  REQUIRE(begun.has_value());
+  const bool isWhole = rational(truth->first).sign() <= 0;
+  const auto isSame = [](const Event& p, const Event& q) { return !precedes(p, q) && !precedes(q, p); };
+  REQUIRE(isSame(begun->first, ours->first));
+  REQUIRE(isSame(begun->last, isWhole ? ours->last : ours->first));
+  REQUIRE(begun->isSharp == ours->isSharp);
   // Swapping the triangles and reversing the direction changes no bit.
   const auto swapped = contact(b, a, {-direction[0], -direction[1], -direction[2]});
   REQUIRE(swapped.has_value());
@@ -216,6 +223,37 @@ TEST_CASE("events at the same parameter compare equal, whatever their features")
     REQUIRE(parameter(p) == 5);
     for (const Event& q : events) REQUIRE(compare(p, q) == 0);
   }
+}
+
+TEST_CASE("events across one axis compare as their fractions do, in doubles that no integers hold together") {
+  Random random(6);
+  const auto level = [&] {
+    return random.chance(0.7) ? 0.1 * random.integer(0, 2) : std::ldexp(0.3, random.integer(-70, 0));
+  };
+  size_t ties = 0, others = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector d = random.inBall();
+    std::vector<Event> events;
+    for (int k = 0; k < 3; ++k) {
+      const int axis = random.chance(0.2) ? 1 : 2;
+      const auto flat = [&](double at) {
+        Triangle t{random.inBall(), random.inBall(), random.inBall()};
+        for (Vector& corner : t) corner[axis] = at;
+        return t;
+      };
+      const Triangle a = flat(level()), b = flat(level());
+      events.push_back(random.chance(0.5) ? vertexFace(d, a[0], b) : edgeEdge(d, a[0], a[1], b[0], b[1]));
+    }
+    for (const Event& p : events) {
+      for (const Event& q : events) {
+        const int order = compare(ratio(p), ratio(q));
+        REQUIRE(compare(p, q) == order);
+        if (&p != &q) ++(order == 0 ? ties : others);
+      }
+    }
+  }
+  CHECK(ties > 100);
+  CHECK(others > 1000);
 }
 
 TEST_CASE("parameters that round to the same double compare as different") {

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "import/input_error.h"
 
@@ -14,54 +12,7 @@ namespace radar::tools {
 /// Parses one JSON document. Beyond the grammar, refuses a key given twice in an object, a number too large for a
 /// double and more than 100 levels. Throws InputError with the path of the value at hand and, for a breach of the
 /// grammar, line and column.
-inline nlohmann::json parseJson(const std::string& file, std::string_view text) {
-  using nlohmann::json;
-  struct Level {
-    bool isArray = false;
-    size_t index = 0;
-    std::string key;
-    std::set<std::string> keys;
-  };
-  constexpr size_t kDeepest = 100;  // what is nested without end overflows the stack
-  std::vector<Level> open;
-  const auto path = [&] {
-    std::string result;
-    for (const Level& level : open) {
-      if (level.isArray) {
-        result += "[" + std::to_string(level.index) + "]";
-      } else if (!level.key.empty()) {
-        result += (result.empty() ? "" : ".") + level.key;
-      }
-    }
-    return result;
-  };
-  const auto follow = [&](int, json::parse_event_t event, json& parsed) {
-    using Event = json::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) {
-      if (open.size() == kDeepest) {
-        throw InputError(file, "", "expected at most 100 levels of lists and objects, got more");
-      }
-      open.push_back({.isArray = event == Event::array_start});
-    } else if (event == Event::key) {
-      Level& level = open.back();
-      level.key = parsed.get<std::string>();
-      if (!level.keys.insert(level.key).second) {
-        throw InputError(file, path(), "expected each key once, got \"" + printable(level.key, 60) + "\" twice");
-      }
-    } else {
-      if (event != Event::value) open.pop_back();
-      if (!open.empty()) ++open.back().index;
-    }
-    return true;
-  };
-  try {
-    return json::parse(text, follow);
-  } catch (const json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: ...": without the bracket.
-    const std::string what = error.what();
-    throw InputError(file, path(), "expected valid JSON, got " + printable(what.substr(what.find("] ") + 2), 300));
-  }
-}
+nlohmann::json parseJson(const std::string& file, std::string_view text);
 
 /// A value with its place in the document, for messages: each accessor throws InputError(file, path, ...) that says
 /// what was expected and what was found. A child must not outlive its parent.

@@ -80,12 +80,17 @@ void ContactSubmitter::submit(const SensorBatch& batch, const Scene::Impl& scene
   recordAndSubmit();
 }
 
-SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages) {
+void ContactSubmitter::wait() {
   submission_.wait();
   scene_.commit(std::move(staged_));
+}
+
+SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages, const std::stop_token& stop) {
+  wait();
   submission_.addTimes(stages);
   while (counts().broken == 0 && pass_.tasksLeft(counts()) != 0) {
     if (submissions_ == kMostSubmissions) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
+    throwIfStopped(stop);
     pass_.stageMore(counts());
     const auto begun = now_();
     recordAndSubmit();

@@ -4,6 +4,7 @@
 #include "contact/decode.h"
 #include "contact/pass.h"
 #include "gpu/submission.h"
+#include "query/cancelled.h"
 
 namespace radar {
 
@@ -41,8 +42,10 @@ class ContactSubmitter {
   /// Submits the batch and returns without waiting; call collect() next.
   void submit(const SensorBatch& batch, const Scene::Impl& scene);
   /// Waits, and submits more rounds until the search is complete. The flags of an invalid result tell what the device
-  /// had no room or range for.
-  SearchAnswers collect(std::vector<StageTime>& stages);
+  /// had no room or range for. Throws Cancelled instead of submitting a round after `stop` is requested.
+  SearchAnswers collect(std::vector<StageTime>& stages, const std::stop_token& stop);
+  /// Waits for the submission in hand. Without collect(), the rest of the batch's search is left.
+  void wait();
   uint32_t submissions() const { return submissions_; }  ///< made for the last batch
   /// Of the last batch, once collected.
   const gpu::SearchCounts& counts() const;

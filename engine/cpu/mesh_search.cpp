@@ -12,6 +12,8 @@ namespace {
 constexpr float kSimilar = 4;
 // Floats are used if they round positions by at most this fraction of a mean triangle edge.
 constexpr double kFloatShare = 0.125;
+// Of pairs of nodes, between two looks at whether the search is still wanted.
+constexpr uint32_t kVisits = 1024;
 
 uint32_t trianglesOf(const gpu::MeshNode& leaf) {
   return (leaf.link & gpu::kLinkPair) != 0 ? 2 : 1;
@@ -221,16 +223,18 @@ void meetLeaves(const MeshPair& pair, Leaves<Real>& leaves, const gpu::MeshNode&
 
 }  // namespace
 
-void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs) {
+void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs,
+                     const std::stop_token& stop) {
   if (floatsSuffice(pair)) {
-    descend<float>(pair, near, visitor, pairs);
+    descend<float>(pair, near, visitor, pairs, stop);
   } else {
-    descend<double>(pair, near, visitor, pairs);
+    descend<double>(pair, near, visitor, pairs, stop);
   }
 }
 
 template <class Real>
-void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs) {
+void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs,
+                         const std::stop_token& stop) {
   const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
   const NodeTest<Real> nodeTimes(pair.fromSensor, pair.fromOther);
   Leaves<Real> leaves(pair);
@@ -239,6 +243,7 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
   float latest = latestNow();
   GapTest gap(pair);
   gap.update(visitor);
+  uint32_t visits = 0;
 
   open_.resize(3 * (size_t{treeA.depth} + treeB.depth) + 4);
   open_[0] = {static_cast<float>((1 - 0x1p-22) * near), 0, 0};
@@ -249,7 +254,10 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
     if (visitor.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
     const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
     if (gap.keepApart(a, b)) continue;
-    if (isLeaf(a) && isLeaf(b)) {
+    // To decide a pair of triangles may take as long as to test very many nodes.
+    const bool areLeaves = isLeaf(a) && isLeaf(b);
+    if (areLeaves || ++visits % kVisits == 0) throwIfStopped(stop);
+    if (areLeaves) {
       meetLeaves(pair, leaves, a, b, pairNow.near, visitor, pairs);
       latest = latestNow();
       gap.update(visitor);

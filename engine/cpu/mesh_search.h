@@ -6,6 +6,7 @@
 
 #include "cpu/first_contact.h"
 #include "cpu/node_test.h"
+#include "query/cancelled.h"
 
 namespace radar::cpu {
 
@@ -28,8 +29,9 @@ struct MeshPair {
 class MeshSearch {
  public:
   /// Passes all pairs of triangles that may matter to `visitor`. There is no contact before `near`, in the
-  /// pair's unit of time. Adds the pairs of triangles that are tested to `pairs`.
-  void run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs);
+  /// pair's unit of time. Adds the pairs of triangles that are tested to `pairs`. Throws Cancelled soon after `stop` is
+  /// requested.
+  void run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs, const std::stop_token& stop);
 
  private:
   /// Two nodes that cannot meet before `near`.
@@ -39,7 +41,7 @@ class MeshSearch {
   };
 
   template <class Real>
-  void descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs);
+  void descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs, const std::stop_token& stop);
 
   std::vector<Open> open_;
 };

@@ -7,6 +7,9 @@ namespace radar::cpu {
 
 namespace {
 
+// Between two looks at whether the search is still wanted.
+constexpr uint32_t kVisits = 256;
+
 /// A node's box: where it is, relative to an origin of both meshes, and half its extent along the world's axes.
 struct PlacedNode {
   const Matrix3& linear;
@@ -50,7 +53,7 @@ double leastBetween(const PlacedNode& a, const PlacedNode& b, const Vector& roun
 }  // namespace
 
 void NearestSearch::run(const PlacedMesh& sensor, const PlacedMesh& other, ObjectId object, NearestAtStart& nearest,
-                        uint64_t& pairs) {
+                        uint64_t& pairs, const std::stop_token& stop) {
   const MeshTree &treeA = sensor.mesh.tree, &treeB = other.mesh.tree;
   const MeshPlacement &ofA = sensor.placement, &ofB = other.placement;
   Vector gap, rounding;
@@ -64,7 +67,8 @@ void NearestSearch::run(const PlacedMesh& sensor, const PlacedMesh& other, Objec
     return Open{leastBetween(placedA(a), placedB(b), rounding), a, b};
   };
   open_ = {openOf(0, 0)};
-  while (!open_.empty()) {
+  for (uint32_t visits = 1; !open_.empty(); ++visits) {
+    if (visits % kVisits == 0) throwIfStopped(stop);
     const Open open = open_.back();
     open_.pop_back();
     const MeshTree::Below &belowB = treeB.below[open.b], &belowA = treeA.below[open.a];

@@ -11,9 +11,10 @@ namespace radar::cpu {
 /// Reuses its memory between searches. For one thread at a time.
 class NearestSearch {
  public:
-  /// Passes all pairs of triangles of a sensor and an object that may be the nearest; adds them to `pairs`.
-  void run(const PlacedMesh& sensor, const PlacedMesh& other, ObjectId object, NearestAtStart& nearest,
-           uint64_t& pairs);
+  /// Passes all pairs of triangles of a sensor and an object that may be the nearest; adds them to `pairs`. `stop`: as
+  /// of MeshSearch.
+  void run(const PlacedMesh& sensor, const PlacedMesh& other, ObjectId object, NearestAtStart& nearest, uint64_t& pairs,
+           const std::stop_token& stop);
 
  private:
   struct Open {

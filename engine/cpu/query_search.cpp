@@ -78,7 +78,9 @@ struct QuerySearch::Task {
   }
 };
 
-Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists) {
+Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists,
+                           const std::stop_token& stop) {
+  stop_ = &stop;
   std::vector<ObjectId> skipped;
   if (query.skipOverlapping) skipped = overlapping(query, scene, tree);
   const Task task(query, scene);
@@ -140,7 +142,8 @@ void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, co
     const Mesh& mesh = scene.meshes[object.mesh];
     const Motion motion = motionPast(query, scene, id);
     finder.beginObject(task.ruleFor(id), motion);
-    nearest_.run(sensor, {mesh, object.worldFromMesh, MeshPlacement(mesh, object.worldFromMesh)}, id, finder, pairs_);
+    nearest_.run(sensor, {mesh, object.worldFromMesh, MeshPlacement(mesh, object.worldFromMesh)}, id, finder, pairs_,
+                 *stop_);
   };
   walk(
       still, Motion(Vector{}, {}), scene, tree, [](double near) { return near <= 0; },
@@ -168,6 +171,7 @@ void QuerySearch::search(const Task& task, ObjectId id, Finder& finder) {
 
 void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion,
                                PairVisitor& visitor) {
+  throwIfStopped(*stop_);
   const Object& object = task.scene.objects[id].object;
   const Mesh& mesh = task.scene.meshes[object.mesh];
   if (visitor.isBefore({id, mesh.tree.below[0].least, 0})) return;
@@ -192,7 +196,7 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& ru
                       pairMotion,
                       fromSensor,
                       fromObject};
-  meshes_.run(pair, times.from, visitor, pairs_);
+  meshes_.run(pair, times.from, visitor, pairs_, *stop_);
 }
 
 }  // namespace radar::cpu

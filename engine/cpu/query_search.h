@@ -17,8 +17,9 @@ void toDistances(Result& result, double distance);
 class QuerySearch {
  public:
   /// Answers a valid query, without tiers. `tree` is the scene's; neither changes meanwhile. `lists`: may be null if
-  /// the query asks for none.
-  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists);
+  /// the query asks for none. Throws Cancelled soon after `stop` is requested.
+  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists,
+                const std::stop_token& stop);
   uint64_t pairs() const { return pairs_; }
 
  private:
@@ -34,7 +35,8 @@ class QuerySearch {
   void search(const Task& task, ObjectId id, Finder& finder);
   void searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion, PairVisitor& visitor);
 
-  std::optional<Motion> past_;  // the sensor's motion past the current object, in a step
+  const std::stop_token* stop_ = nullptr;  // of the answer in hand
+  std::optional<Motion> past_;             // the sensor's motion past the current object, in a step
   MeshSearch meshes_;
   NearestSearch nearest_;
   uint64_t pairs_ = 0;

@@ -25,15 +25,16 @@ double secondsSince(Clock::time_point start) {
 }  // namespace
 
 void Search::run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
-                 std::span<Result> results, std::span<Listed> lists) {
+                 std::span<Result> results, std::span<Listed> lists, const std::stop_token& stop) {
   const ObjectTree& tree = scene.objectTree();
   const size_t count = queries.size();
   size_t workers = std::clamp<size_t>(count, 1, threadCount(threads));
   if (searches_.size() < workers) searches_.resize(workers);
   const auto answer = [&](unsigned worker, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
+      throwIfStopped(stop);
       Listed* const listed = hasLists(queries[i]) ? &lists[i] : nullptr;
-      results[i] = searches_[worker].answer(queries[i], scene, tree, listed);
+      results[i] = searches_[worker].answer(queries[i], scene, tree, listed, stop);
       results[i].tier = tier;
       if (listed == nullptr) continue;
       for (Result& hit : listed->hits) hit.tier = tier;
@@ -88,7 +89,7 @@ void CpuSweeper::sync() {
   impl_->scene.impl().objectTree();
 }
 
-Answers CpuSweeper::run(std::span<const Query> queries) {
+Answers CpuSweeper::run(std::span<const Query> queries, const std::stop_token& stop) {
   const FloatEnvironment floats;
   for (size_t i = 0; i < queries.size(); ++i) {
     if (const std::string wrong = validate(queries[i], impl_->scene); !wrong.empty()) {
@@ -97,9 +98,14 @@ Answers CpuSweeper::run(std::span<const Query> queries) {
   }
   Answers answers = unanswered(queries);
   const uint64_t before = impl_->search.pairs();
-  impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, answers.results, answers.lists);
+  try {
+    impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, answers.results, answers.lists,
+                      stop);
+  } catch (const Cancelled&) {
+    cancelRest(answers);
+  }
   answers.stats.pairs = answers.stats.cpuPairs = impl_->search.pairs() - before;
-  answers.stats.cpuQueries = queries.size();
+  answers.stats.cpuQueries = queries.size() - answers.reasons.size();
   return answers;
 }
 

@@ -20,9 +20,10 @@ class Search {
   /// empty if no query has lists. Uses up to `threads` threads
   /// (0: one per core), including the caller's; it starts none for one query, or for a few that take less time than
   /// starting a thread. The answers do not depend on the number of threads. The queries are valid, and the scene does
-  /// not change meanwhile.
+  /// not change meanwhile. Soon after `stop` is requested, throws Cancelled; queries without an answer then have the
+  /// result that they had before.
   void run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
-           std::span<Result> results, std::span<Listed> lists);
+           std::span<Result> results, std::span<Listed> lists, const std::stop_token& stop);
 
   /// Pairs of triangles that all threads have tested since construction.
   uint64_t pairs() const;

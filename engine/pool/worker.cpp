@@ -114,7 +114,7 @@ void Worker::begin(Lane& lane, Chunk chunk) {
     isSynced_ = !error;
     if (isSynced_) seenVersion_ = version;
   }
-  lane.flight.emplace(lane.chunk.queries(), options_.timestamps);
+  lane.flight.emplace(lane.chunk.queries(), options_.timestamps, lane.chunk.job->stop);
   lane.sweep->begin(*lane.flight, lane.chunk.job->mode);
   lane.trace.submitted = queue_.now();
 }
@@ -138,7 +138,8 @@ void Worker::finish(Lane& lane) {
   // The first use of a pipeline may take a hundred times as long and is no measure of the device's speed.
   bool& warm = lane.warm[static_cast<size_t>(lane.chunk.job->mode)];
   const bool usedDevice = flight.answers.stats.submissions != 0;
-  const double deviceMs = warm || !usedDevice ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
+  const bool isMeasure = (warm || !usedDevice) && !flight.stop.stop_requested();
+  const double deviceMs = isMeasure ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
   warm = warm || usedDevice;
   lastDone_ = lane.trace.done;
   if (std::exchange(lane.isMakeshift, false)) lane.sweep.reset();

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "query/cancelled.h"
+
 namespace radar {
 
 namespace {
@@ -26,6 +28,14 @@ bool isOrdered(const Result& p, const Result& q) {
 Answers unanswered(std::span<const Query> queries) {
   const bool someList = std::any_of(queries.begin(), queries.end(), hasLists);
   return {.results = std::vector<Result>(queries.size()), .lists = std::vector<Listed>(someList ? queries.size() : 0)};
+}
+
+void cancelRest(Answers& answers) {
+  for (size_t i = 0; i < answers.results.size(); ++i) {
+    if (answers.results[i].status != Status::invalid || answers.reasons.contains(i)) continue;
+    answers.reasons[i] = "cancelled";
+    if (!answers.lists.empty()) answers.lists[i] = {};
+  }
 }
 
 Merged merged(std::span<const Result> searches, uint32_t most) {

@@ -71,9 +71,12 @@ void ContactRunner::finish(Flight& flight) {
 }
 
 void ContactRunner::abandon(Flight& flight) noexcept {
+  flight.planned = {};
+  flight.left.clear();
+  flight.again.clear();
   if (std::exchange(flight.submitted, {}).empty()) return;
   try {
-    submitter_->collect(flight.answers.stats.stages);
+    submitter_->wait();
   } catch (const std::exception&) {  // the exception that was first is the one to report
   }
 }
@@ -88,6 +91,7 @@ void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
   flight.addCpuTime("select", msSince(begun));
   flight.encoding = Clock::now();
   for (const size_t query : which) {
+    throwIfStopped(flight.stop);
     if (!planQuery(flight, query, tree)) flight.left.push_back(query);
   }
   submit(flight);
@@ -160,7 +164,7 @@ void ContactRunner::collect(Flight& flight) {
   const std::vector<PlannedSearches::Group> groups = std::exchange(flight.submitted, {});
   if (groups.empty()) return;
   attempt(flight, groups, [&] {
-    const SearchAnswers found = submitter_->collect(flight.answers.stats.stages);
+    const SearchAnswers found = submitter_->collect(flight.answers.stats.stages, flight.stop);
     flight.deviceDone = Clock::now();
     flight.answers.stats.submissions += submitter_->submissions();
     flight.answers.stats.pairs += found.trianglePairs;
@@ -211,6 +215,7 @@ void ContactRunner::decide(Flight& flight, const SearchAnswers& found, std::span
   }
   parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
+      if (flight.stop.stop_requested()) return;  // those that are certain are answers
       const auto [i, query] = open[k];
       const Query& asked = flight.queries[query];
       const auto pairs = unresolved.of(i, results[i]);
@@ -232,13 +237,13 @@ void ContactRunner::answerLeft(Flight& flight) {
   if (left.back() - first + 1 == count) {  // without gaps
     cpu_.run(flight.queries.subspan(first, count), scene_.impl(), Tier::contact, options_.cpuThreads,
              std::span(answers.results).subspan(first, count),
-             answers.lists.empty() ? std::span<Listed>() : std::span(answers.lists).subspan(first, count));
+             answers.lists.empty() ? std::span<Listed>() : std::span(answers.lists).subspan(first, count), flight.stop);
   } else {
     std::vector<Query> queries;
     queries.reserve(count);
     for (const size_t i : left) queries.push_back(flight.queries[i]);
     Answers found = unanswered(queries);
-    cpu_.run(queries, scene_.impl(), Tier::contact, options_.cpuThreads, found.results, found.lists);
+    cpu_.run(queries, scene_.impl(), Tier::contact, options_.cpuThreads, found.results, found.lists, flight.stop);
     for (size_t k = 0; k < count; ++k) answers.results[left[k]] = found.results[k];
     for (size_t k = 0; k < found.lists.size(); ++k) answers.lists[left[k]] = std::move(found.lists[k]);
   }

@@ -16,7 +16,8 @@ class ContactRunner {
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
   bool isOnCpu() const;
-  /// Plans and submits all queries; on return the last submission may still be running.
+  /// Plans and submits all queries; on return the last submission may still be running. As finish(), throws Cancelled
+  /// soon after the batch's stop is requested; then call abandon().
   void begin(Flight& flight);
   /// Waits, and answers the queries that the device had no room or range for.
   void finish(Flight& flight);

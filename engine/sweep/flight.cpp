@@ -1,13 +1,19 @@
 #include "sweep/flight.h"
 
+#include <utility>
+
 #include "gpu/check.h"
 #include "gpu/submission.h"
 #include "query/hits.h"
 
 namespace radar {
 
-Flight::Flight(std::span<const Query> asked, bool timestamps)
-    : queries(asked), answers(unanswered(asked)), deviceDone(Clock::now()), measures(timestamps) {}
+Flight::Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted)
+    : queries(asked),
+      answers(unanswered(asked)),
+      deviceDone(Clock::now()),
+      measures(timestamps),
+      stop(std::move(wanted)) {}
 
 void Flight::fail(size_t query, const Error& error) {
   if (error.vulkan == VK_SUCCESS) throw error;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "contact/sensors.h"
@@ -28,14 +29,16 @@ struct PlannedSearches {
 };
 
 struct Flight {
-  /// `asked` stays in place until the batch is answered. `timestamps`: as SweeperOptions::timestamps.
-  Flight(std::span<const Query> asked, bool timestamps);
+  /// `asked` stays in place until the batch is answered. `timestamps`: as SweeperOptions::timestamps. `wanted`: until
+  /// this is requested to stop.
+  Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted = {});
 
   std::span<const Query> queries;
   Answers answers;
   std::optional<Error> failure;  ///< the first Vulkan call that failed, also if all queries were answered
   Clock::time_point deviceDone;  ///< when the device ended the last submission
   bool measures;                 ///< SweeperOptions::timestamps
+  std::stop_token stop;          ///< once requested, runners throw Cancelled
 
   // Mode contact.
   PlannedSearches planned;                        ///< for the next submission

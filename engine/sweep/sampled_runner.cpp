@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gpu/check.h"
+#include "query/cancelled.h"
 #include "sampled/decode.h"
 
 namespace radar {
@@ -76,6 +77,7 @@ bool SampledRunner::trySubmit(Flight& flight, std::span<Planned> part, bool isLa
 void SampledRunner::submit(Flight& flight, std::span<Planned> part) {
   if (part.empty()) return;
   finish(flight);
+  throwIfStopped(flight.stop);
   if (trySubmit(flight, part, false)) return;
   if (part.size() == 1) {
     trySubmit(flight, part, true);  // pictures of other queries have been freed
@@ -141,6 +143,7 @@ void SampledRunner::begin(Flight& flight) {
   std::vector<Planned> slice;
   Load load;
   for (size_t i = 0; i < flight.queries.size(); ++i) {
+    throwIfStopped(flight.stop);
     const Clock::time_point start = Clock::now();
     ViewPlan plan = planOf(flight.queries[i], options_.select ? Drawn::inReach : Drawn::everything);
     flight.addCpuTime("select", msSince(start));

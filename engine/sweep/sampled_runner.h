@@ -11,7 +11,8 @@ class SampledRunner {
  public:
   SampledRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options, GpuScene& resident);
 
-  /// Plans and submits the batch; on return the last submission may still be running.
+  /// Plans and submits the batch; on return the last submission may still be running. Throws Cancelled soon after the
+  /// batch's stop is requested; then call abandon().
   void begin(Flight& flight);
   /// Waits for the last submission, if one is running, and decodes it.
   void finish(Flight& flight);

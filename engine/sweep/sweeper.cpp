@@ -3,6 +3,7 @@
 
 #include "gpu/check.h"
 #include "math/float_environment.h"
+#include "query/cancelled.h"
 #include "scene/scene_copy.h"
 
 namespace radar {
@@ -49,9 +50,22 @@ std::optional<Error> Sweeper::Impl::sync() {
   return {};
 }
 
+template <class Step>
+void Sweeper::Impl::attempt(Flight& flight, const Step& step) {
+  try {
+    step();
+  } catch (const Cancelled&) {
+    abandon(flight);
+    cancelRest(flight.answers);
+  } catch (...) {
+    abandon(flight);
+    throw;
+  }
+}
+
 void Sweeper::Impl::begin(Flight& flight, Mode mode) {
   if (flight.queries.empty()) return;
-  try {
+  attempt(flight, [&] {
     if (mode == Mode::contact) return contactRunner.begin(flight);
     try {
       sampled();
@@ -60,20 +74,14 @@ void Sweeper::Impl::begin(Flight& flight, Mode mode) {
       return;
     }
     sampledRunner->begin(flight);
-  } catch (...) {
-    abandon(flight);
-    throw;
-  }
+  });
 }
 
 void Sweeper::Impl::finish(Flight& flight) {
-  try {
+  attempt(flight, [&] {
     if (sampledRunner) sampledRunner->finish(flight);
     contactRunner.finish(flight);
-  } catch (...) {
-    abandon(flight);
-    throw;
-  }
+  });
 }
 
 void Sweeper::Impl::abandon(Flight& flight) noexcept {
@@ -105,11 +113,11 @@ void Sweeper::sync() {
   impl_->sync();
 }
 
-Answers Sweeper::run(std::span<const Query> queries, Mode mode) {
+Answers Sweeper::run(std::span<const Query> queries, Mode mode, const std::stop_token& stop) {
   const FloatEnvironment floats;
   if (mode == Mode::sampled) impl_->device.requireSampled("run()");
   impl_->validateAll(queries, mode);
-  Flight flight(queries, impl_->options.timestamps);
+  Flight flight(queries, impl_->options.timestamps, stop);
   impl_->begin(flight, mode);
   impl_->finish(flight);
   return std::move(flight.answers);

@@ -17,10 +17,15 @@ struct Sweeper::Impl {
   std::optional<Error> sync();
   /// Plans and submits a batch of valid queries, of one mode; on return the last submission may still be running.
   /// finish() completes its answers. If either throws, nothing of the batch stays with the device; one batch at a time.
+  /// Of a batch that is no longer wanted, both return soon.
   void begin(Flight& flight, Mode mode);
   void finish(Flight& flight);
   /// Waits for what is running of a batch that is given up.
   void abandon(Flight& flight) noexcept;
+
+  /// Calls `step`. If that throws, gives up the batch, and unless its stop was requested, rethrows.
+  template <class Step>
+  void attempt(Flight& flight, const Step& step);
 
   void validateAll(std::span<const Query> queries, Mode mode) const;
   SampledRunner& sampled();

@@ -38,8 +38,8 @@ class DeviceSearch {
       : sweeper_(test::device().impl(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
                  false) {}
 
-  Answers run(std::span<const Query> queries) {
-    Flight flight(queries, false);
+  Answers run(std::span<const Query> queries, const std::stop_token& stop = {}) {
+    Flight flight(queries, false, stop);
     sweeper_.begin(flight, Mode::contact);
     sweeper_.finish(flight);
     return std::move(flight.answers);
@@ -185,6 +185,27 @@ TEST_CASE("a device that takes long is given less at a time, and another ever mo
   CAPTURE(submissions);
   // How many more depends on how much a round of so many iterations does: on lavapipe little.
   CHECK(submissions[0] > (test::isLavapipe() ? 2 : 1) * submissions[1]);
+}
+
+TEST_CASE("a search on a device whose stop is requested submits no further round, and the next one is answered",
+          "[subgroups]") {
+  const TrianglesOverhead triangles(true);
+  std::stop_source stop;
+  int looks = 0;
+  // At the clock, once before and once after every round but the first.
+  const auto look = [&] {
+    if (++looks == 4) stop.request_stop();
+    return std::chrono::steady_clock::time_point(std::chrono::seconds(looks));
+  };
+  DeviceSearch search(triangles.scene, {.candidates = 100'000, .groups = 1, .now = look});
+  const std::vector<Query> queries(3, triangles.query);
+  const Answers stopped = search.run(queries, stop.get_token());
+  CHECK(looks == 4);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    CHECK(stopped.results[i].status == Status::invalid);
+    CHECK(stopped.reasons.at(i) == "cancelled");
+  }
+  CHECK(differenceOf(search.run(queries).results, DeviceSearch(triangles.scene).run(queries).results) == "");
 }
 
 TEST_CASE("queries that floats cannot represent are answered on the CPU") {

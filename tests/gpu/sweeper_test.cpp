@@ -49,6 +49,21 @@ class WatchedSubmits {
 
 }  // namespace
 
+TEST_CASE("of a batch whose stop has been requested before, a sweeper answers nothing in either mode") {
+  const test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 100, .sensors = 16}), 16);
+  Sweeper sweeper(test::device(), asked.scene, {.cpuBatch = GENERATE(0u, kNone)});
+  for (const Mode mode : {Mode::contact, Mode::sampled}) {
+    std::stop_source stop;
+    const std::vector<Result> expected = sweeper.run(asked.queries, mode, stop.get_token()).results;
+    stop.request_stop();
+    const Answers answers = sweeper.run(asked.queries, mode, stop.get_token());
+    CHECK(answers.reasons.size() == asked.queries.size());
+    CHECK(answers.reasons.at(0) == "cancelled");
+    CHECK(answers.stats.submissions == 0);
+    CHECK(differenceOf(sweeper.run(asked.queries, mode).results, expected) == "");
+  }
+}
+
 TEST_CASE("a batch of more sensors than the device has layers is split and keeps its bits") {
   test::Case asked = test::caseOf(
       tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 512, .shape = tools::SensorShape::box}), 16);

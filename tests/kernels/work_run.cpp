@@ -24,7 +24,7 @@ void printWork(const Device& device, const char* name, const tools::Workload& wo
   ContactSubmitter submitter(device.impl(), copy, false, {.countsWork = true});
   std::vector<StageTime> stages;
   submitter.submit(batch, scene);
-  submitter.collect(stages);
+  submitter.collect(stages, {});
   const gpu::SearchCounts& counts = submitter.counts();
   const double queries = batch.count();
   std::printf("| %s | %.0f |", name, queries);

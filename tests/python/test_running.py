@@ -60,6 +60,52 @@ def test_ctrl_c_ends_a_cast(boxes):
     assert scene.cast(mesh, poses[:9], DOWN, mode="reference").shape == (9,)
 
 
+def endless(scene) -> int:
+    """Two clouds of segments, through each other, of which no two touch: a search past all takes long."""
+    rng = np.random.default_rng(63)
+    faces = np.arange(60_000).reshape(-1, 2)[:, [0, 1, 1]]
+    clouds = [scene.add_mesh(rng.uniform(-1, 1, (60_000, 3)).astype(np.float32), faces) for _ in range(2)]
+    scene.add(clouds[0], np.eye(4))
+    return clouds[1]
+
+
+@pytest.mark.parametrize("mode", ["reference", "contact"])
+def test_ctrl_c_ends_a_cast_within_a_query(mode):
+    scene = cyber_radar.Scene()
+    mesh = endless(scene)
+    begun = threading.Event()
+
+    def interrupt():
+        begun.wait()
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+
+    # The first chunk is far away from the object.
+    poses = np.tile(at([0, 0, 1000]), (65, 1, 1))
+    poses[64] = np.eye(4)
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        pool.submit(interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            scene.cast(mesh, poses, [0, 0, 1e-9], mode=mode, progress=lambda *_: begun.set())
+    assert scene.cast(mesh, poses[:2], DOWN, mode=mode).status.tolist() == [cyber_radar.Status.CLEAR] * 2
+
+
+def test_a_handler_of_another_signal_may_end_a_cast_too():
+    scene = cyber_radar.Scene()
+    mesh = endless(scene)
+
+    def give_up(*_):
+        raise TimeoutError("enough")
+
+    before = signal.signal(signal.SIGALRM, give_up)
+    try:
+        with pytest.raises(TimeoutError, match="enough"):
+            signal.setitimer(signal.ITIMER_REAL, 0.1)
+            scene.cast(mesh, np.eye(4), [0, 0, 1e-9])
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
 def test_what_progress_raises_ends_the_cast_with_some_of_out_written(boxes):
     scene, mesh = boxes
     poses, displacements = many(5000)

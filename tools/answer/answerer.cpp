@@ -37,11 +37,12 @@ void Answerer::sync() {
   if (cpu_) cpu_->sync();
 }
 
-Answers Answerer::run(const std::vector<Query>& queries, AnswerMode mode) {
+Answers Answerer::run(const std::vector<Query>& queries, AnswerMode mode, const std::stop_token& stop) {
   open(mode);
-  if (mode == AnswerMode::reference) return cpu_->run(queries);
+  if (mode == AnswerMode::reference) return cpu_->run(queries, stop);
   const Mode ofDevice = mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
-  Answers answers = pool_ ? Answers(pool_->submit(queries, ofDevice).get()) : sweeper_->run(queries, ofDevice);
+  Answers answers =
+      pool_ ? Answers(pool_->submit(queries, ofDevice, stop).get()) : sweeper_->run(queries, ofDevice, stop);
   if (options_.onLost && !answers.stats.lost.empty()) std::exchange(options_.onLost, nullptr)(answers.stats.lost);
   return answers;
 }

@@ -36,8 +36,8 @@ class Answerer {
   void open(AnswerMode mode);
   /// Brings the scene to where it is needed, as far as that is open.
   void sync();
-  /// Opens what the mode needs, and throws as Sweeper::run and Pool::submit do.
-  Answers run(const std::vector<Query>& queries, AnswerMode mode);
+  /// Opens what the mode needs, and throws and stops as Sweeper::run and Pool::submit do.
+  Answers run(const std::vector<Query>& queries, AnswerMode mode, const std::stop_token& stop = {});
 
   /// Those that are open: none where the CPU has answered everything.
   std::span<const Device> devices() const { return devices_; }

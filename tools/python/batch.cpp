@@ -6,6 +6,8 @@
 #include <cstring>
 #include <thread>
 
+#include "python/errands.h"
+
 namespace radar::python {
 
 namespace {
@@ -13,7 +15,7 @@ namespace {
 using tools::AnswerMode;
 using Clock = std::chrono::steady_clock;
 
-// Between two chunks a signal is seen and progress reported. The first is small, because a query may take anything from
+// Between two chunks progress is reported. The first is small, because a query may take anything from
 // a microsecond to a second; each is then as large as fits into the time, and into a cache. Answers do not depend on
 // it.
 constexpr size_t kFirstChunk = 64, kLargestChunk = 1 << 14, kGrowth = 8;
@@ -159,10 +161,10 @@ std::string wrongWith(const Query& query, const Scene& scene, AnswerMode mode) {
 }
 
 /// Answers the queries; those that break their contracts become invalid, with a reason.
-Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMode mode) {
+Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMode mode, const std::stop_token& stop) {
   Answers all;
   try {
-    return scene.answerer().run(queries, mode);
+    return scene.answerer().run(queries, mode, stop);
   } catch (const Error&) {
     for (size_t i = 0; i < queries.size(); ++i) {
       if (std::string wrong = wrongWith(queries[i], scene.scene(), mode); !wrong.empty()) {
@@ -178,13 +180,34 @@ Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMod
     numbers.push_back(i);
     valid.push_back(queries[i]);
   }
-  Answers some = scene.answerer().run(valid, mode);
+  Answers some = scene.answerer().run(valid, mode, stop);
   all.results.resize(queries.size());
   if (!some.lists.empty()) all.lists.resize(queries.size());
   for (size_t i = 0; i < numbers.size(); ++i) all.results[numbers[i]] = some.results[i];
   for (size_t i = 0; i < some.lists.size(); ++i) all.lists[numbers[i]] = std::move(some.lists[i]);
   for (const auto& [i, reason] : some.reasons) all.reasons[numbers[i]] = reason;
   return all;
+}
+
+/// The same, while `look`, if there is one, is called from time to time; gives up what it throws at.
+Answers answerUnless(const std::function<void()>& look, CastingScene& scene, const std::vector<Query>& queries,
+                     AnswerMode mode) {
+  if (!look) return answer(scene, queries, mode, {});
+  Answers answers;
+  std::stop_source stop;
+  std::exception_ptr thrown;
+  Errands::shared().run([&] { answers = answer(scene, queries, mode, stop.get_token()); },
+                        [&] {
+                          if (thrown) return;
+                          try {
+                            look();
+                          } catch (...) {
+                            thrown = std::current_exception();
+                            stop.request_stop();
+                          }
+                        });
+  if (thrown) std::rethrow_exception(thrown);
+  return answers;
 }
 
 /// The times of a step are fractions of its displacement, whose length rounds, as products do; the floor is what a
@@ -249,7 +272,7 @@ void BatchOutput::write(size_t i, const Result& result) const {
 }
 
 BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
-                const std::function<void(size_t)>& afterChunk) {
+                const std::function<void()>& look, const std::function<void(size_t)>& afterChunk) {
   BatchLists lists;
   const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
   const bool mayRoundUp = !scene.moves();
@@ -264,7 +287,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
       Reader reader(scene.based(), input, first + from, mayRoundUp);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
-    Answers answers = answer(scene, queries, input.mode);
+    Answers answers = answerUnless(look, scene, queries, input.mode);
     timesToDistances(queries, answers);
     inParts(end - first, [&](size_t from, size_t to) {
       for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i]);

@@ -62,9 +62,10 @@ struct BatchLists {
   std::map<std::string, std::vector<int64_t>> reasons;  ///< why queries are invalid, and which
 };
 
-/// Answers the batch in chunks. After each, `afterChunk` gets the number of queries answered; what it throws ends the
-/// batch. A query that breaks its contract becomes Status::invalid.
+/// Answers the batch in chunks. After each, `afterChunk` gets the number of queries answered. While this waits for one,
+/// `look`, if there is one, is called about every 50 ms: by one thread at a time of the process. What either throws
+/// ends the batch soon. A query that breaks its contract becomes Status::invalid.
 BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
-                const std::function<void(size_t)>& afterChunk);
+                const std::function<void()>& look, const std::function<void(size_t)>& afterChunk);
 
 }  // namespace radar::python

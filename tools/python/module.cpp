@@ -132,6 +132,12 @@ py::tuple listsFor(const Query& options, BatchLists&& found, const py::function&
   return py::make_tuple(hits, overlapping, reasons);
 }
 
+/// Python handles signals in this thread alone.
+bool isMainThread() {
+  const py::object main = py::module_::import("threading").attr("main_thread")();
+  return PyThread_get_thread_ident() == main.attr("ident").cast<unsigned long>();
+}
+
 py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, const py::dict& arguments,
                      const py::dict& options, const py::dict& out, const py::function& makeArrays,
                      const py::object& afterChunk) {
@@ -163,9 +169,16 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   input.mode = modeFrom(options);
   const BatchOutput output = outputFrom(out, input.count());
   BatchLists found;
+  std::function<void()> heedSignals;
+  if (isMainThread()) {
+    heedSignals = [] {
+      const py::gil_scoped_acquire acquire;
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    };
+  }
   {
     const py::gil_scoped_release release;
-    found = cast(scene, input, output, [&](size_t done) {
+    found = cast(scene, input, output, heedSignals, [&](size_t done) {
       const py::gil_scoped_acquire acquire;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (!afterChunk.is_none()) afterChunk(done);

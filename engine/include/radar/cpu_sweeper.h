@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <stop_token>
 
 #include "radar/answers.h"
 #include "radar/query.h"
@@ -29,8 +30,8 @@ class RADAR_API CpuSweeper {
   /// the two triangles already meet at the start, other than by just touching, or lie in one plane that contains the
   /// motion. There is no point if they meet at the start and lie in one plane. An answer's bits do not depend on its
   /// batch or on the number of threads. Throws Error, naming the query, if one breaks its contract, before any is
-  /// answered. A batch of one starts no thread.
-  Answers run(std::span<const Query> queries);
+  /// answered. A batch of one starts no thread. `stop`: as of Sweeper::run.
+  Answers run(std::span<const Query> queries, const std::stop_token& stop = {});
 
  private:
   struct Impl;

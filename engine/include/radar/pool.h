@@ -66,7 +66,8 @@ class RADAR_API Pool {
   /// Submits any number of queries; the future gets their answers, or std::bad_alloc if the host's memory does not
   /// suffice: the pool keeps its devices, and later batches are answered. Throws if a device does not support the mode,
   /// or, naming the query, if one breaks its contract. Once `stop` is requested, queries that no device has taken
-  /// become Status::invalid ("cancelled") when the batch's turn comes. Blocks only while the scene is being edited.
+  /// become Status::invalid ("cancelled") when the batch's turn comes, and a device's as Sweeper::run says. Blocks only
+  /// while the scene is being edited.
   std::future<PoolAnswers> submit(std::vector<Query> queries, Mode mode = Mode::contact, std::stop_token stop = {});
 
   /// While the pool lives, the scene may change only in `change`. Waits until all earlier batches are answered, then

@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -93,8 +94,9 @@ class RADAR_API Sweeper {
   /// batches of more than 16,384, or too large for the device's layers or memory, take several; in mode contact the CPU
   /// answers those for which memory does not suffice. The answer to a query does not depend on its batch. Before
   /// anything is submitted, throws if the device does not support the mode, or, naming the query, if one breaks its
-  /// contract. Blocks until done.
-  Answers run(std::span<const Query> queries, Mode mode = Mode::contact);
+  /// contract. Blocks until done, or soon after another thread requests `stop`: on the CPU at once, on the device once
+  /// the submission in hand ends. Queries that have no answer then are Status::invalid ("cancelled").
+  Answers run(std::span<const Query> queries, Mode mode = Mode::contact, const std::stop_token& stop = {});
 
   /// The pictures from which mode sampled answers `query`, at the query's resolution. Throws Error if they do not fit
   /// the device, or it does not support the mode.

@@ -215,7 +215,7 @@ void ContactRunner::decide(Flight& flight, const SearchAnswers& found, std::span
   }
   parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
-      if (flight.stop.stop_requested()) return;  // those that are certain are answers
+      throwIfStopped(flight.stop);
       const auto [i, query] = open[k];
       const Query& asked = flight.queries[query];
       const auto pairs = unresolved.of(i, results[i]);

@@ -1,6 +1,7 @@
 #include "contact/decode.h"
 
 #include <algorithm>
+#include <atomic>
 #include <tuple>
 
 #include <vulkan/vulkan_core.h>
@@ -8,9 +9,19 @@
 #include "cpu/clearance.h"
 #include "cpu/query_search.h"
 #include "exact/blocking.h"
-#include "exact/earliest_contact.h"
+#include "query/cancelled.h"
+#include "scene/parallel.h"
 
 namespace radar {
+
+namespace {
+
+// Whether the CPU is to decide the search's pairs.
+bool isLeft(const Result& found) {
+  return found.flags == Flag::unresolved || found.status == Status::overlap;
+}
+
+}  // namespace
 
 UnresolvedPairs::UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs) {
   ordered_.reserve(pairs.size());
@@ -22,12 +33,22 @@ UnresolvedPairs::UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs) {
 }
 
 std::span<const gpu::UnresolvedPair* const> UnresolvedPairs::of(uint32_t sensor, const Result& found) const {
-  if (found.flags != Flag::unresolved && found.status != Status::overlap) return {};
+  if (!isLeft(found)) return {};
   const auto first =
       std::partition_point(ordered_.begin(), ordered_.end(), [&](const auto* pair) { return pair->sensor < sensor; });
   const auto end =
       std::partition_point(first, ordered_.end(), [&](const auto* pair) { return pair->sensor == sensor; });
   return {first, end};
+}
+
+std::vector<std::span<const gpu::UnresolvedPair* const>> UnresolvedPairs::bySearch() const {
+  std::vector<std::span<const gpu::UnresolvedPair* const>> parts;
+  for (auto first = ordered_.begin(); first != ordered_.end();) {
+    const auto end = std::find_if(first, ordered_.end(), [&](const auto* p) { return p->sensor != (*first)->sensor; });
+    parts.emplace_back(first, end);
+    first = end;
+  }
+  return parts;
 }
 
 namespace {
@@ -48,40 +69,25 @@ exact::PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query
   return placed;
 }
 
-// Considers a pair by the rule of a query that ignores what does not block.
-void considerBlocking(const gpu::UnresolvedPair& pair, const exact::PlacedPair& inOrder,
-                      const exact::PlacedPair& sorted, const Query& query, const exact::Course& course,
-                      std::span<const Vector> farthest, exact::EarliestContact& earliest) {
+cpu::PairRule ruleFor(const gpu::UnresolvedPair& pair, const Query& query, std::span<const Vector> farthest) {
+  if (!query.ignoreLeaving) return {};
   const Transform worldFromObject = poseOf(pair);
-  const double slack = query.slack
-                           ? *query.slack
-                           : exact::defaultSlack(std::max(placedMagnitude(farthest[query.mesh], query.worldFromMesh),
-                                                          placedMagnitude(farthest[pair.mesh], worldFromObject)));
-  const exact::Mirrored mirrored{exact::isMirroring(query.worldFromMesh), exact::isMirroring(worldFromObject)};
-  const exact::PairName name{pair.object, pair.triB, pair.triA};
-  if (exact::arePressed(inOrder.a, inOrder.b, course, slack, mirrored)) {
-    earliest.considerPressed(name, sorted);
-  } else {
-    earliest.consider(name, sorted, [&] { return exact::blocks(inOrder.a, inOrder.b, course, slack, mirrored); });
-  }
+  const double greatest = std::max(placedMagnitude(farthest[query.mesh], query.worldFromMesh),
+                                   placedMagnitude(farthest[pair.mesh], worldFromObject));
+  return {query.slack.value_or(exact::defaultSlack(greatest)),
+          {exact::isMirroring(query.worldFromMesh), exact::isMirroring(worldFromObject)}};
 }
 
-Result decideClearance(std::span<const gpu::UnresolvedPair* const> pairs, const Query& query, const Motion& motion,
-                       double tolerance) {
-  cpu::ClearanceContact contact(query, motion, tolerance);
-  contact.beginObject({}, motion);
+// `finder`: as of the CPU's search, about to begin.
+template <class Finder>
+Result decideBy(Finder&& finder, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
+                const Motion& motion, std::span<const Vector> farthest) {
   for (const gpu::UnresolvedPair* pair : pairs) {
-    contact.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query), 0);
-    if (contact.isDecided()) break;
+    finder.beginObject(ruleFor(*pair, query, farthest), motion);
+    finder.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query), 0);
+    if (finder.isDecided()) break;
   }
-  Result result = contact.first();
-  if (result.status == Status::overlap) {
-    // Only the CPU's search names the nearest pair.
-    result = {};
-    result.status = Status::overlap;
-    result.detected = Detected::yes;
-    result.t = result.lo = result.hi = result.fraction = 0;
-  }
+  Result result = finder.first();
   result.tier = Tier::contact;
   return result;
 }
@@ -90,27 +96,40 @@ Result decideClearance(std::span<const gpu::UnresolvedPair* const> pairs, const 
 
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
                         const Motion& motion, double tolerance, std::span<const Vector> farthest) {
-  if (query.clearance > 0) return decideClearance(pairs, query, motion, tolerance);
-  exact::EarliestContact earliest(motion);
-  for (const gpu::UnresolvedPair* pair : pairs) {
-    const exact::PlacedPair inOrder = placedPair(*pair, query);
-    // Sorted, so that the device's numbering of corners does not matter.
-    exact::PlacedPair sorted = inOrder;
-    std::sort(sorted.a.begin(), sorted.a.end());
-    std::sort(sorted.b.begin(), sorted.b.end());
-    if (query.ignoreLeaving) {
-      considerBlocking(*pair, inOrder, sorted, query, exact::courseOf(motion), farthest, earliest);
-    } else {
-      earliest.consider({pair->object, pair->triB, pair->triA}, sorted);
-    }
-    if (query.anyHit && earliest.found()) break;
+  if (query.clearance > 0) {
+    Result result = decideBy(cpu::ClearanceContact(query, motion, tolerance), pairs, query, motion, farthest);
+    if (result.status != Status::overlap) return result;
+    // Only the CPU's search names the nearest pair.
+    Result unnamed(Status::overlap);
+    unnamed.tier = Tier::contact;
+    unnamed.detected = Detected::yes;
+    unnamed.t = unnamed.lo = unnamed.hi = unnamed.fraction = 0;
+    return unnamed;
   }
-  if (!earliest.found() && found.detected == Detected::yes) {
+  const Result result = decideBy(cpu::FirstContact(query, motion), pairs, query, motion, farthest);
+  if (result.status == Status::clear && found.detected == Detected::yes) {
     throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
   }
-  Result result = earliest.answer(query.anyHit);
-  result.tier = Tier::contact;
   return result;
+}
+
+uint64_t decideAll(std::span<const gpu::UnresolvedPair> pairs, const Deciding& how,
+                   const std::function<OpenSearch(uint32_t search, ObjectId object)>& ask) {
+  const UnresolvedPairs unresolved(pairs);
+  const auto searches = unresolved.bySearch();
+  std::atomic<uint64_t> decided = 0;
+  parallelFor(searches.size(), 16, how.threads, [&](unsigned, size_t first, size_t last) {
+    for (size_t k = first; k < last; ++k) {
+      throwIfStopped(how.stop);
+      const auto own = searches[k];
+      if (own.size() > how.most) continue;
+      const OpenSearch open = ask(own.front()->sensor, own.front()->object);
+      if (!isLeft(open.result)) continue;
+      open.result = decideUnresolved(open.result, own, open.query, open.motion, open.tolerance, how.farthest);
+      decided += own.size();
+    }
+  });
+  return decided;
 }
 
 Result clearAnswer() {

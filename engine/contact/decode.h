@@ -1,8 +1,11 @@
 // Decides the unresolved pairs of a search exactly: those that are too close for the device's arithmetic.
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <optional>
 #include <span>
+#include <stop_token>
 
 #include "exact/motion.h"
 #include "math/vector.h"
@@ -22,6 +25,8 @@ class UnresolvedPairs {
   explicit UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs);
   /// Ordered by (object, triB, triA). None if `found`, the sensor's answer, stands.
   std::span<const gpu::UnresolvedPair* const> of(uint32_t sensor, const Result& found) const;
+  /// Those of each search, whether its answer stands or not.
+  std::vector<std::span<const gpu::UnresolvedPair* const>> bySearch() const;
 
  private:
   std::vector<const gpu::UnresolvedPair*> ordered_;
@@ -34,6 +39,27 @@ class UnresolvedPairs {
 /// Mesh::farthest of the meshes that were searched.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
                         const Motion& motion, double tolerance, std::span<const Vector> farthest);
+
+/// A search that may be left open: what decideUnresolved() needs.
+struct OpenSearch {
+  Result& result;
+  Query query;
+  Motion motion;
+  double tolerance = 0;
+};
+
+struct Deciding {
+  std::span<const Vector> farthest;  ///< as of decideUnresolved()
+  size_t most = std::numeric_limits<size_t>::max();
+  unsigned threads = 1;
+  std::stop_token stop = {};
+};
+
+/// Decides the searches that are left open, in place, but for those with more than `most` pairs. `ask`: of a search,
+/// with the object of one of its pairs; called on several threads. Returns how many pairs were decided. Throws
+/// Cancelled soon after the stop is requested.
+uint64_t decideAll(std::span<const gpu::UnresolvedPair> pairs, const Deciding& how,
+                   const std::function<OpenSearch(uint32_t search, ObjectId object)>& ask);
 
 /// The answer to a query with nothing in reach.
 Result clearAnswer();

@@ -136,7 +136,7 @@ GpuScene::Staged ContactPass::beginStaging(uint32_t searches, const Scene::Impl&
   return staged;
 }
 
-GpuScene::Staged ContactPass::stage(const SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene,
+GpuScene::Staged ContactPass::stage(const SearchPlan& batch, std::span<const Result> known, const Scene::Impl& scene,
                                     GpuScene::Overwritten next) {
   ignoresLeaving_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::ignoreLeaving);
   hasClearances_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::hasClearance);

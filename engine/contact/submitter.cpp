@@ -73,7 +73,7 @@ void ContactSubmitter::recordAndSubmit() {
   ++submissions_;
 }
 
-void ContactSubmitter::submit(const SensorBatch& batch, const Scene::Impl& scene) {
+void ContactSubmitter::submit(const SearchPlan& batch, const Scene::Impl& scene) {
   submissions_ = 0;
   staged_ = pass_.stage(batch, {}, scene);
   readback_.reserve(PairSolver::kFirstResult + batch.count() * sizeof(Result));

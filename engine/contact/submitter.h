@@ -40,7 +40,7 @@ class ContactSubmitter {
   ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchRoom& room);
 
   /// Submits the batch and returns without waiting; call collect() next.
-  void submit(const SensorBatch& batch, const Scene::Impl& scene);
+  void submit(const SearchPlan& batch, const Scene::Impl& scene);
   /// Waits, and submits more rounds until the search is complete. The flags of an invalid result tell what the device
   /// had no room or range for. Throws Cancelled instead of submitting a round after `stop` is requested.
   SearchAnswers collect(std::vector<StageTime>& stages, const std::stop_token& stop);

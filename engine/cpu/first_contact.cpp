@@ -4,24 +4,16 @@
 #include <optional>
 
 #include "cpu/certificate.h"
-#include "cpu/swept_overlap.h"
 
 namespace radar::cpu {
 
-FirstContact::FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size)
-    : PairVisitor(motion.distance),
-      query_(query),
-      motion_(&motion),
-      sensor_(sensor),
-      size_(size),
-      view_(sensor, size, motion.unit),
-      earliest_(motion) {}
+FirstContact::FirstContact(const Query& query, const Motion& motion)
+    : PairVisitor(motion.distance), query_(query), motion_(&motion), earliest_(motion) {}
 
 void FirstContact::beginObject(const PairRule& rule, const Motion& motion) {
   rule_ = rule;
   if (!motion.isStep) return;
   motion_ = &motion;
-  view_ = View(sensor_, size_, motion.unit);
   earliest_.setMotion(motion);
 }
 
@@ -44,11 +36,7 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
   }
   if (mayBePressed && rule_.arePressed(pair, *motion_)) return earliest_.considerPressed(name, pair);
   if (certain) return earliest_.considerKnown(name, pair, *certain, doesBlock);
-  const double reach = view_.scale * motion_->wayUntil(latest_);
-  const Meeting meeting = meetingOf(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), reach);
-  if (meeting == Meeting::never) return false;
-  // Most pairs that meet ahead block, most that touch at the start do not.
-  if (meeting == Meeting::ahead) return earliest_.consider(name, pair, doesBlock);
+  // Most pairs that touch at the start do not block, and that takes less time to decide than their contact.
   return doesBlock() && earliest_.consider(name, pair);
 }
 

@@ -9,7 +9,6 @@
 
 #include "cpu/approach.h"
 #include "cpu/leaf_test.h"
-#include "cpu/view.h"
 #include "exact/blocking.h"
 #include "exact/earliest_contact.h"
 #include "exact/nearness.h"
@@ -80,8 +79,8 @@ double addNearest(std::vector<Contact>& nearest, size_t most, Contact contact) {
 
 class FirstContact final : public PairVisitor {
  public:
-  /// `sensor`, `size`: the sensor's approximate position and size. `query` and `motion` must outlive this.
-  FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size);
+  /// `query` and `motion` must outlive this.
+  FirstContact(const Query& query, const Motion& motion);
 
   /// Call before and after the pairs of one object. `rule` matters only if the query ignores pairs that do not block.
   /// `motion` must stay in place until the next object, or until the answers are taken.
@@ -100,9 +99,6 @@ class FirstContact final : public PairVisitor {
 
   const Query& query_;
   const Motion* motion_;  // past the current object
-  const Vector sensor_;
-  const double size_;
-  View view_;
   PairRule rule_;
   exact::EarliestContact earliest_;              // of all objects, or of the current one if several are asked for
   std::vector<exact::EarliestContact> nearest_;  // one per object, earliest first

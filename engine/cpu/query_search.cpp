@@ -11,14 +11,6 @@ namespace radar::cpu {
 
 namespace {
 
-Vector middleOf(const Mesh& mesh, const MeshPlacement& placement) {
-  Vector middle = placement.origin;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) middle[i] += placement.linear[i][k] * mesh.tree.nodes[0].centre[k];
-  }
-  return middle;
-}
-
 Query stillAt(const Query& query) {
   Query still = query;
   still.distance = 0;
@@ -84,8 +76,6 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   std::vector<ObjectId> skipped;
   if (query.skipOverlapping) skipped = overlapping(query, scene, tree);
   const Task task(query, scene);
-  const Vector& extent = task.placement.extent;
-  const double size = std::max({extent[0], extent[1], extent[2]});
   const auto find = [&](auto&& finder) {
     const auto wants = [&](double near) {
       return !finder.isDecided() && near <= task.motion.wayUntil(finder.latest());
@@ -111,7 +101,7 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
     describeStart(query, scene, tree, skipped, first, lists);
     return first;
   }
-  return find(FirstContact(query, task.motion, middleOf(task.sensor, task.placement), size));
+  return find(FirstContact(query, task.motion));
 }
 
 std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {

@@ -48,13 +48,13 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
   isWritten = false;
   count = static_cast<uint32_t>(asked.size());
   queries.assign(asked.begin(), asked.end());
-  sensors.clear();
+  searches.clear();
   gathered.clear();
   hitOffsets.clear();
   tolerances.clear();
   const bool isInRange = scene.objectTree().inRange();
   std::vector<std::vector<ObjectId>> objects(count);
-  size_t searches = 0;
+  size_t pastOneObject = 0;
   uint32_t end = count;
   for (uint32_t i = 0; i < count; ++i) {
     const Query& query = queries[i];
@@ -65,16 +65,16 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
       throw Refusal("query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
                     " objects in reach, got " + std::to_string(several));
     }
-    searches += several;
+    pastOneObject += several;
     hitOffsets.push_back(end);
     const uint32_t listed = query.hits > 1 ? std::min(query.hits, several) : 0;
     if (several > 0) gathered.push_back({.query = i, .first = 0, .count = several, .list = end, .listed = listed});
     end += listed;
     tolerances.push_back(cpu::toleranceOf(query, scene.meshes[query.mesh]));
   }
-  if (searches > mostSearches) {
+  if (pastOneObject > mostSearches) {
     throw Refusal("expected at most " + std::to_string(mostSearches) +
-                  " searches past one object each (Capacity::searches), got " + std::to_string(searches));
+                  " searches past one object each (Capacity::searches), got " + std::to_string(pastOneObject));
   }
   hitOffsets.push_back(end);
   known.assign(end, clearAnswer());
@@ -82,19 +82,21 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
   for (uint32_t i = 0; i < count; ++i) {
     const bool takesSeveral = next != gathered.end() && next->query == i;
     if (takesSeveral) next++->first = static_cast<uint32_t>(known.size());
+    const uint32_t first = searches.count();
     for (const ObjectId object : objects[i]) {
       const uint32_t result = takesSeveral ? static_cast<uint32_t>(known.size()) : i;
       if (takesSeveral) known.push_back(clearAnswer());
       planSearch(queries[i], result, object, scene, geometry);
     }
+    searches.group(i, first);
   }
 }
 
 void Recorded::planSearch(const Query& query, uint32_t result, ObjectId object, const Scene::Impl& scene,
                           const HostGeometryPass& geometry) {
-  const Planned planned = addSensor(sensors, query, result, scene, scene.objectTree(), object);
+  const Planned planned = searches.add(query, result, scene, scene.objectTree(), object);
   if (planned == Planned::outOfRange) known[result] = outOfRange();
-  if (planned == Planned::added && geometry.isUnbounded(query.mesh)) sensors.sweeps.back().magnitude = -1;
+  if (planned == Planned::added && geometry.isUnbounded(query.mesh)) searches.sweeps.back().magnitude = -1;
 }
 
 void Recorded::planWritten(uint32_t most) {
@@ -122,20 +124,15 @@ void Recorded::learn(const std::map<MeshId, Box>& boxes) {
 }
 
 Answers Recorded::answers(std::vector<Result> all, std::span<const gpu::UnresolvedPair> pairs) const {
-  const UnresolvedPairs unresolved(pairs);
-  auto next = gathered.begin();
-  for (uint32_t i = 0; i < sensors.count(); ++i) {
-    const gpu::Sweep& sweep = sensors.sweeps[i];
-    while (next != gathered.end() && sweep.result >= next->first + next->count) ++next;
-    Result& result = all[sweep.result];
-    const auto left = unresolved.of(i, result);
-    if (left.empty()) continue;
-    const uint32_t number = sweep.result >= hitOffsets.back() ? next->query : sweep.result;
+  decideAll(pairs, {.farthest = *farthest}, [&](uint32_t search, ObjectId) {
+    const gpu::Sweep& sweep = searches.sweeps[search];
+    const size_t number = groupOf(searches.groups, search).query;
     const Query& query = queries[number];
+    // The object may move otherwise by now.
     const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
-    const Motion motion = query.motion ? Motion(*query.motion, drift) : Motion(query);
-    result = decideUnresolved(result, left, query, motion, tolerances[number], *farthest);
-  }
+    return OpenSearch{all[sweep.result], query, query.motion ? Motion(*query.motion, drift) : Motion(query),
+                      tolerances[number]};
+  });
   Answers answers = unanswered(queries);
   std::copy_n(all.begin(), count, answers.results.begin());
   for (const gpu::Gathered& several : gathered) {
@@ -148,13 +145,10 @@ Answers Recorded::answers(std::vector<Result> all, std::span<const gpu::Unresolv
 
 Answers Recorded::answersToWritten(std::vector<Result> all, std::span<const gpu::UnresolvedPair> pairs,
                                    const gpu::Sweep* sweeps) const {
-  const UnresolvedPairs unresolved(pairs);
-  for (uint32_t i = 0; i < all.size(); ++i) {
-    const auto left = unresolved.of(i, all[i]);
-    if (left.empty()) continue;
-    const Query query = queryOf(sweeps[i]);
-    all[i] = decideUnresolved(all[i], left, query, Motion(query), 0, *farthest);
-  }
+  decideAll(pairs, {.farthest = *farthest}, [&](uint32_t search, ObjectId) {
+    const Query query = queryOf(sweeps[search]);
+    return OpenSearch{all[search], query, Motion(query)};
+  });
   return {.results = std::move(all)};
 }
 

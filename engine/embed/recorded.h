@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/sensors.h"
+#include "contact/search_plan.h"
 #include "embed/host_geometry.h"
 #include "radar/answers.h"
 #include "scene/gpu_scene.h"
@@ -18,7 +18,7 @@ struct Recorded {
   bool isWritten = false;      ///< a host's shader writes the queries
   uint32_t count = 0;          ///< of queries; of written ones, HostQueries::count
   std::vector<Query> queries;  ///< none if they are written
-  SensorBatch sensors;
+  SearchPlan searches;
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches, in their order
   std::vector<uint32_t> hitOffsets;     ///< where the lists of the queries begin in `known`, and the last one ends
   std::vector<Result> known;            ///< of queries, their lists, and searches past one object each

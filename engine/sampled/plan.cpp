@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "contact/sensors.h"
+#include "contact/search_plan.h"
 #include "math/frame.h"
 #include "math/rounding.h"
 #include "query/swept.h"

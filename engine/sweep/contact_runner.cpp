@@ -105,26 +105,22 @@ bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tr
   std::vector<ObjectId> objects{kNone};
   if (route == Route::searchEach) objects = inReach(asked, scene, tree);
   if (objects.size() > mostSensors_) return false;
-  if (flight.planned.sensors.count() + objects.size() > mostSensors_) submit(flight);
-  SensorBatch& sensors = flight.planned.sensors;
-  const uint32_t first = sensors.count();
+  if (flight.planned.count() + objects.size() > mostSensors_) submit(flight);
+  SearchPlan& searches = flight.planned;
+  const uint32_t first = searches.count();
   for (const ObjectId object : objects) {
-    if (addSensor(sensors, asked, sensors.count(), scene, tree, object) != Planned::outOfRange) continue;
-    sensors.truncate(first);
+    if (searches.add(asked, searches.count(), scene, tree, object) != Planned::outOfRange) continue;
+    searches.truncate(first);
     return false;
   }
-  if (const uint32_t count = sensors.count() - first; count > 0) {
-    flight.planned.groups.push_back({query, first, count});
-  } else {
-    flight.answers.results[query] = clearAnswer();
-  }
+  if (!searches.group(query, first)) flight.answers.results[query] = clearAnswer();
   return true;
 }
 
 template <class Step>
-bool ContactRunner::attempt(Flight& flight, std::span<const PlannedSearches::Group> groups, const Step& step) {
+bool ContactRunner::attempt(Flight& flight, std::span<const SearchPlan::Group> groups, const Step& step) {
   const auto leave = [&] {
-    for (const PlannedSearches::Group& group : groups) flight.left.push_back(group.query);
+    for (const SearchPlan::Group& group : groups) flight.left.push_back(group.query);
   };
   try {
     step();
@@ -136,7 +132,7 @@ bool ContactRunner::attempt(Flight& flight, std::span<const PlannedSearches::Gro
       if (gpu::isLost(error)) flight.answers.stats.lost = lost_ = error.what();
       leave();
     } else {
-      for (const PlannedSearches::Group& group : groups) flight.fail(group.query, error);
+      for (const SearchPlan::Group& group : groups) flight.fail(group.query, error);
     }
   }
   return false;
@@ -144,13 +140,13 @@ bool ContactRunner::attempt(Flight& flight, std::span<const PlannedSearches::Gro
 
 void ContactRunner::submit(Flight& flight) {
   flight.addCpuTime("encode", msSince(flight.encoding));
-  PlannedSearches planned = std::exchange(flight.planned, {});
+  SearchPlan planned = std::exchange(flight.planned, {});
   if (planned.groups.empty()) return;
   collect(flight);
   const bool isSubmitted = attempt(flight, planned.groups, [&] {
     if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, room_);
     try {
-      submitter_->submit(planned.sensors, scene_.impl());
+      submitter_->submit(planned, scene_.impl());
     } catch (const Error& error) {
       if (gpu::isOutOfMemory(error)) submitter_.reset();  // its lists may have grown too large
       throw;
@@ -161,7 +157,7 @@ void ContactRunner::submit(Flight& flight) {
 }
 
 void ContactRunner::collect(Flight& flight) {
-  const std::vector<PlannedSearches::Group> groups = std::exchange(flight.submitted, {});
+  const std::vector<SearchPlan::Group> groups = std::exchange(flight.submitted, {});
   if (groups.empty()) return;
   attempt(flight, groups, [&] {
     const SearchAnswers found = submitter_->collect(flight.answers.stats.stages, flight.stop);
@@ -173,11 +169,20 @@ void ContactRunner::collect(Flight& flight) {
   });
 }
 
-void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups) {
+void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span<const SearchPlan::Group> groups) {
   const Scene::Impl& scene = scene_.impl();
   std::vector<Result> results(found.results.begin(), found.results.end());
-  decide(flight, found, groups, results);
-  for (const PlannedSearches::Group& group : groups) {
+  for (const Result& result : results) {
+    if (result.flags != 0 || result.status != Status::invalid) continue;
+    throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
+  }
+  const Deciding how{*resident_.farthest(), kMostDecided, options_.cpuThreads, flight.stop};
+  flight.answers.stats.cpuPairs += decideAll(found.unresolved, how, [&](uint32_t search, ObjectId object) {
+    const Query& query = flight.queries[groupOf(groups, search).query];
+    return OpenSearch{results[search], query, motionPast(query, scene, object),
+                      cpu::toleranceOf(query, scene.meshes[query.mesh])};
+  });
+  for (const SearchPlan::Group& group : groups) {
     const Query& query = flight.queries[group.query];
     const auto searches = std::span(results).subspan(group.first, group.count);
     const bool lacksRoom = found.roomier && std::any_of(searches.begin(), searches.end(), [](const Result& result) {
@@ -190,40 +195,6 @@ void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span
       (lacksRoom ? flight.again : flight.left).push_back(group.query);
     }
   }
-}
-
-// Decides the searches that are open, in place.
-void ContactRunner::decide(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups,
-                           std::span<Result> results) const {
-  const Scene::Impl& scene = scene_.impl();
-  const UnresolvedPairs unresolved(found.unresolved);
-  struct Open {
-    uint32_t search;
-    size_t query;
-  };
-  std::vector<Open> open;
-  for (const PlannedSearches::Group& group : groups) {
-    for (uint32_t i = group.first; i < group.first + group.count; ++i) {
-      if (results[i].flags == 0 && results[i].status == Status::invalid) {
-        throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
-      }
-      const size_t pairs = unresolved.of(i, results[i]).size();
-      if (pairs == 0 || pairs > kMostDecided) continue;
-      open.push_back({i, group.query});
-      flight.answers.stats.cpuPairs += pairs;
-    }
-  }
-  parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
-    for (size_t k = first; k < last; ++k) {
-      throwIfStopped(flight.stop);
-      const auto [i, query] = open[k];
-      const Query& asked = flight.queries[query];
-      const auto pairs = unresolved.of(i, results[i]);
-      const Motion motion = motionPast(asked, scene, pairs.front()->object);
-      const double tolerance = cpu::toleranceOf(asked, scene.meshes[asked.mesh]);
-      results[i] = decideUnresolved(results[i], pairs, asked, motion, tolerance, *resident_.farthest());
-    }
-  });
 }
 
 void ContactRunner::answerLeft(Flight& flight) {

@@ -30,14 +30,12 @@ class ContactRunner {
   bool planQuery(Flight& flight, size_t query, const ObjectTree& tree);
   void submit(Flight& flight);
   void collect(Flight& flight);
-  void decode(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups);
-  void decide(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups,
-              std::span<Result> results) const;
+  void decode(Flight& flight, const SearchAnswers& found, std::span<const SearchPlan::Group> groups);
   void answerLeft(Flight& flight);
   /// Calls `step`; leaves the queries to the CPU if memory, or a limit of the device, does not suffice for it, or the
   /// device is lost, and without an answer if another Vulkan call fails. Returns whether nothing did.
   template <class Step>
-  bool attempt(Flight& flight, std::span<const PlannedSearches::Group> groups, const Step& step);
+  bool attempt(Flight& flight, std::span<const SearchPlan::Group> groups, const Step& step);
 
   const gpu::Owner owner_;
   const Device::Impl& device_;

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "contact/sensors.h"
+#include "contact/search_plan.h"
 #include "radar/answers.h"
 
 namespace radar {
@@ -17,16 +17,6 @@ using Clock = std::chrono::steady_clock;
 inline double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
-
-/// The searches of one submission.
-struct PlannedSearches {
-  struct Group {
-    size_t query;
-    uint32_t first, count;  ///< of `sensors`; several ascend by object
-  };
-  std::vector<Group> groups;
-  SensorBatch sensors;
-};
 
 struct Flight {
   /// `asked` stays in place until the batch is answered. `timestamps`: as SweeperOptions::timestamps. `wanted`: until
@@ -41,11 +31,11 @@ struct Flight {
   std::stop_token stop;          ///< once requested, runners throw Cancelled
 
   // Mode contact.
-  PlannedSearches planned;                        ///< for the next submission
-  std::vector<PlannedSearches::Group> submitted;  ///< in the last one, until it is collected
-  std::vector<size_t> left;                       ///< queries for the CPU
-  std::vector<size_t> again;                      ///< queries to repeat, now that the device has room for them
-  Clock::time_point encoding;                     ///< since when the next submission is being planned
+  SearchPlan planned;                        ///< for the next submission
+  std::vector<SearchPlan::Group> submitted;  ///< in the last one, until it is collected
+  std::vector<size_t> left;                  ///< queries for the CPU
+  std::vector<size_t> again;                 ///< queries to repeat, now that the device has room for them
+  Clock::time_point encoding;                ///< since when the next submission is being planned
   // Mode sampled.
   std::vector<size_t> drawn;  ///< queries of the last submission, until it is collected
 

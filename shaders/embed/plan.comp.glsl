@@ -1,4 +1,4 @@
-// States the searches for the queries that a host's shader has written, one invocation per query, as engine/contact/sensors.cpp
+// States the searches for the queries that a host's shader has written, one invocation per query, as engine/contact/search_plan.cpp
 // does (docs/method.md, "A host's geometry").
 #version 460
 #extension GL_EXT_control_flow_attributes : require

@@ -181,9 +181,9 @@ TEST_CASE(
   const OnDevicePlan planned(scene, written);
   const ObjectTree& tree = scene.impl().objectTree();
   // The same queries, as the CPU states them.
-  SensorBatch batch;
+  SearchPlan batch;
   for (uint32_t i = 0; i < written.size(); ++i) {
-    REQUIRE(addSensor(batch, test::queryOf(written[i]), i, scene.impl(), tree) == Planned::added);
+    REQUIRE(batch.add(test::queryOf(written[i]), i, scene.impl(), tree) == Planned::added);
   }
   GpuScene copy(test::device().impl());
   const test::Encoded ofCpu = test::encodedBy(copy, scene.impl(), batch);

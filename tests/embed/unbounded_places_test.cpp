@@ -20,10 +20,10 @@ using namespace radar;
 using test::bufferOf;
 using test::OnDevice;
 
-SensorBatch statedFor(const Scene& scene, std::span<const Query> queries) {
-  SensorBatch batch;
+SearchPlan statedFor(const Scene& scene, std::span<const Query> queries) {
+  SearchPlan batch;
   for (const Query& query : queries) {
-    REQUIRE(addSensor(batch, query, batch.count(), scene.impl(), scene.impl().objectTree()) == Planned::added);
+    REQUIRE(batch.add(query, batch.count(), scene.impl(), scene.impl().objectTree()) == Planned::added);
   }
   return batch;
 }
@@ -37,7 +37,7 @@ struct OnDevicePlaces : test::Encoded {
     ContactPass search(device, copy, {});
     HostGeometryPass geometry(device, copy);
     geometry.stage({.meshes = meshes}, impl);
-    SensorBatch batch = statedFor(scene, queries);
+    SearchPlan batch = statedFor(scene, queries);
     for (gpu::Sweep& sweep : batch.sweeps) sweep.magnitude = -1;
     const std::vector<Result> known(queries.size());
     search.stage(batch, known, impl, geometry.overwritten());

@@ -226,12 +226,12 @@ uint32_t leafOf(const ObjectTree& tree, ObjectId object) {
 void Margins::check() {
   const Scene::Impl& impl = scene_.impl();
   const ObjectTree& tree = impl.objectTree();
-  SensorBatch batch;
+  SearchPlan batch;
   std::vector<Touch> touches;
   std::vector<const Case*> of;
   std::vector<const Case*> stated;
   for (const Case& c : cases_) {
-    if (addSensor(batch, c.query, batch.count(), impl, tree) == Planned::added) stated.push_back(&c);
+    if (batch.add(c.query, batch.count(), impl, tree) == Planned::added) stated.push_back(&c);
   }
   const test::Encoded encoded = test::encodedBy(gpuScene_, impl, batch);
   uint32_t searched = 0;

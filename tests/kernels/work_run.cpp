@@ -17,9 +17,9 @@ void printWork(const Device& device, const char* name, const tools::Workload& wo
   const test::Case asked = test::caseOf(workload);
   const Scene::Impl& scene = asked.scene.impl();
   GpuScene copy(device.impl());
-  SensorBatch batch;
+  SearchPlan batch;
   for (uint32_t i = 0; i < asked.queries.size(); ++i) {
-    if (addSensor(batch, asked.queries[i], i, scene, scene.objectTree()) != Planned::added) throw Error("out of range");
+    if (batch.add(asked.queries[i], i, scene, scene.objectTree()) != Planned::added) throw Error("out of range");
   }
   ContactSubmitter submitter(device.impl(), copy, false, {.countsWork = true});
   std::vector<StageTime> stages;

@@ -76,24 +76,6 @@ def bounded_operations(sources):
     return [Inequality(what, error.least, value.error, [without_flushing]) for what, (value, error) in results.items()]
 
 
-def outlines(sources):
-    """Orientations of an edge and a vertex, seen along the motion. W bounds differences of corners, which are off by E.
-
-    A corner's error is 24 u of its size (measured), so E is at least 24 u W; that covers what the bound's own rounding
-    takes.
-    """
-    corners = [Vector([UNKNOWN] * 2)] * 3
-    triangle = {"corners": corners, "error": positive("e"), "area": UNKNOWN, "areaError": UNKNOWN}
-    difference = Number(symbol("W"), symbol("E") * (1 + 4 * UNIT))
-    names = {"error": positive("E"), "x[i][k]": difference, "y[i][k]": difference}
-    conditions = {"contracts": {"separates": False}, "globals": {"kNext": [1, 2, 0]}}
-    evaluator, out = evaluator_of(sources, names=names, **conditions), {}
-    evaluator.call("outline", triangle, triangle, positive("W"), out)
-    orientations = [value for name in ("overA", "overB") for row in out[name] for value in row]
-    steps = [without_flushing, at_most({"W": symbol("E") * (1 / (24 * UNIT))})]
-    return [Inequality(f"orientation {i}", out["bound"].least, v.error, steps) for i, v in enumerate(orientations)]
-
-
 def placement(sources):
     """Placing by the formula of radar::Transform, and the origin of the faster one, each against exact placing."""
     evaluator = evaluator_of(sources)
@@ -160,8 +142,6 @@ def claims():
     determinants = [VECTOR_FILE, "engine/exact/determinant.h"]
     crosses = ["engine/exact/determinant.h", "engine/exact/determinant.cpp"]
     numbers = [ROUNDING_FILE, "engine/exact/bounded.h"]
-    overlap = [ROUNDING_FILE, "engine/cpu/swept_overlap.cpp"]
-    width = ["4 * width * error", "4 * error * error", "4 * kUnit * width"]
     placements = [ROUNDING_FILE, "engine/cpu/pair_motion.cpp", "engine/math/frame.cpp"]
     mesh, pair, relation = (f"{name}::{name}" for name in ("MeshPlacement", "PairMotion", "RelativePlacement"))
     return [
@@ -169,7 +149,6 @@ def claims():
         Claim("component of a cross product", "crossSign", relative, crosses, cross_sign),
         Claim("side beyond a slack", "sideBeyond", ["2.125 * slack"], ["engine/cpu/certificate.cpp"], side_beyond),
         Claim("numbers with bounds", "Bounded", [("kMore", "0x1p-49")], numbers, bounded_operations),
-        Claim("outlines", "outline", width, overlap, outlines),
         Claim("placement of a mesh", mesh, ["16 * kUnit"], placements, placement),
         Claim("relative placement", pair, ["32 * kUnit"], MOTION_FILES, relative_placement),
         Claim("relative placement", relation, ["32 * kUnit"], MOTION_FILES, relative_placement),

@@ -39,7 +39,7 @@ inline Encoded encodedBy(
 }
 
 /// The same for a batch of searches in a scene.
-inline Encoded encodedBy(GpuScene& copy, const Scene::Impl& scene, const SensorBatch& batch) {
+inline Encoded encodedBy(GpuScene& copy, const Scene::Impl& scene, const SearchPlan& batch) {
   ContactPass search(device().impl(), copy, {});
   const std::vector<Result> known(batch.count());
   copy.commit(search.stage(batch, known, scene));

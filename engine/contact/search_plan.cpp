@@ -1,7 +1,8 @@
-#include "contact/sensors.h"
+#include "contact/search_plan.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "exact/blocking.h"
 #include "math/frame.h"
@@ -28,16 +29,26 @@ void stateDistance(gpu::StatedSearch& out, const Query& query, const Motion& mot
 
 }  // namespace
 
-void SensorBatch::clear() {
-  stated.clear();
-  sweeps.clear();
-  excluded.clear();
+void SearchPlan::clear() {
+  truncate(0);
 }
 
-void SensorBatch::truncate(uint32_t count) {
+void SearchPlan::truncate(uint32_t count) {
   if (count < stated.size()) excluded.resize(stated[count].firstExcluded);
   stated.resize(count);
   sweeps.resize(count);
+  while (!groups.empty() && groups.back().first >= count) groups.pop_back();
+}
+
+bool SearchPlan::group(size_t query, uint32_t first) {
+  if (first == count()) return false;
+  groups.push_back({query, first, count() - first});
+  return true;
+}
+
+const SearchPlan::Group& groupOf(std::span<const SearchPlan::Group> groups, uint32_t search) {
+  return *std::prev(std::partition_point(groups.begin(), groups.end(),
+                                         [&](const SearchPlan::Group& group) { return group.first <= search; }));
 }
 
 gpu::Sweep sweepOf(const Query& query, const Motion& motion, const Vector& direction, uint32_t result) {
@@ -56,35 +67,35 @@ gpu::Sweep sweepOf(const Query& query, const Motion& motion, const Vector& direc
   return sweep;
 }
 
-Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
-                  const ObjectTree& tree, ObjectId object) {
+Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& scene, const ObjectTree& tree,
+                        ObjectId object) {
   if (!tree.inRange()) return Planned::outOfRange;
   if (tree.nodes().empty()) return Planned::clear;
   const Motion motion = motionPast(query, scene, object);
   const Vector direction = scaledDirection(motion.direction);
   if (std::ilogb(largest(direction)) != 0) return Planned::outOfRange;
   const Mesh& mesh = scene.meshes[query.mesh];
-  gpu::StatedSearch stated{.mesh = query.mesh, .mask = query.mask};
-  stated.start = object == kNone ? tree.nodes()[0].link : gpu::kLinkLeaf | object;
+  gpu::StatedSearch search{.mesh = query.mesh, .mask = query.mask};
+  search.start = object == kNone ? tree.nodes()[0].link : gpu::kLinkLeaf | object;
   const std::array<Vector, 3> axes = axesAlong(direction);
   for (int k = 0; k < 3; ++k) {
-    stated.across[k] = static_cast<float>(axes[0][k]);
-    stated.upwards[k] = static_cast<float>(axes[1][k]);
-    stated.direction[k] = static_cast<float>(axes[2][k]);
+    search.across[k] = static_cast<float>(axes[0][k]);
+    search.upwards[k] = static_cast<float>(axes[1][k]);
+    search.direction[k] = static_cast<float>(axes[2][k]);
   }
-  stateDistance(stated, query, motion);
-  stated.clearance = roundUp(std::min(query.clearance, kLongest));
-  stated.tolerance = roundUp(std::min(query.tolerance.value_or(kLongest), kLongest));
-  if (query.ignoreLeaving && query.slack) stated.slack = roundUp(std::min(2 * *query.slack, kLongest));
+  stateDistance(search, query, motion);
+  search.clearance = roundUp(std::min(query.clearance, kLongest));
+  search.tolerance = roundUp(std::min(query.tolerance.value_or(kLongest), kLongest));
+  if (query.ignoreLeaving && query.slack) search.slack = roundUp(std::min(2 * *query.slack, kLongest));
   // A contact that is certain wherever the slack moves a corner blocks. Twice the slack, since it may also tilt planes:
   // then the same holds for triangles in one plane (docs/exact.md, "Pairs that block"). By default the slack is at most
   // a sixteenth of either placement's error.
-  if (query.ignoreLeaving && !query.slack) stated.slackShare = 0.125f;
-  stated.firstExcluded = static_cast<uint32_t>(batch.excluded.size());
+  if (query.ignoreLeaving && !query.slack) search.slackShare = 0.125f;
+  search.firstExcluded = static_cast<uint32_t>(excluded.size());
   // Who is searched alone takes part.
-  if (object == kNone) batch.excluded.insert(batch.excluded.end(), query.exclude.begin(), query.exclude.end());
-  std::sort(batch.excluded.begin() + stated.firstExcluded, batch.excluded.end());
-  stated.endExcluded = static_cast<uint32_t>(batch.excluded.size());
+  if (object == kNone) excluded.insert(excluded.end(), query.exclude.begin(), query.exclude.end());
+  std::sort(excluded.begin() + search.firstExcluded, excluded.end());
+  search.endExcluded = static_cast<uint32_t>(excluded.size());
 
   gpu::Sweep sweep = sweepOf(query, motion, direction, result);
   sweep.hasClearance = query.clearance > 0 ? 1 : 0;
@@ -94,8 +105,8 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
     sweep.slack = query.slack.value_or(-1);
     sweep.magnitude = placedMagnitude(mesh.farthest, query.worldFromMesh);
   }
-  batch.stated.push_back(stated);
-  batch.sweeps.push_back(sweep);
+  stated.push_back(search);
+  sweeps.push_back(sweep);
   return Planned::added;
 }
 

@@ -26,6 +26,7 @@ class ClearanceContact final : public PairVisitor {
   void beginObject(const PairRule& rule, const Motion& motion) {
     rule_ = rule;
     motion_ = &motion;
+    if (query_.ignoreLeaving) lead_ = rule.leadOf(motion);
   }
   void endObject();
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
@@ -69,12 +70,15 @@ class NearestAtStart {
   void beginObject(const PairRule& rule, const Motion& motion) {
     rule_ = rule;
     motion_ = &motion;
+    if (query_.ignoreLeaving) lead_ = rule.leadOf(motion);
     // What is pressed together may have sunk in.
     if (query_.ignoreLeaving && name_.object == kNone) reach_ = std::max(reach_, 2 * rule.slack);
   }
   void consider(const exact::PairName& name, const exact::PlacedPair& pair);
   /// No pair at a greater distance, world units, matters.
   double reach() const { return reach_; }
+  /// As of a PairVisitor.
+  const Lead& lead() const { return lead_; }
   /// Whether neither `least` nor a pair after it matters, because a lesser one touches.
   bool isBefore(const exact::PairName& least) const { return nearest_.distance == 0 && name_ < least; }
   /// Sets ids, features, point, normal and gap.
@@ -84,6 +88,7 @@ class NearestAtStart {
   const Query& query_;
   const Motion* motion_ = nullptr;
   PairRule rule_;
+  Lead lead_;
   double reach_;
   exact::PairName name_;
   Separation nearest_{std::numeric_limits<double>::infinity(), {}, {}, {}};

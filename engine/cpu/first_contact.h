@@ -15,6 +15,13 @@
 
 namespace radar::cpu {
 
+/// Of a triangle that is ahead of another one along `way`, of length 1, by more than `by`, world units: moving that
+/// way, it only gets farther from it. Without a `way` nothing is.
+struct Lead {
+  Vector way{};
+  double by = 0;
+};
+
 /// What a search over pairs of triangles serves: finds the pairs that matter and bounds those still wanted.
 class PairVisitor {
  public:
@@ -33,6 +40,8 @@ class PairVisitor {
   /// With a clearance: across the gap of a pair found so far, along which others probably are farther apart; 0 if none
   /// is known.
   const Vector& across() const { return across_; }
+  /// Pairs with this lead do not matter.
+  const Lead& lead() const { return lead_; }
 
  protected:
   explicit PairVisitor(double latest) : latest_(latest) {}
@@ -43,6 +52,7 @@ class PairVisitor {
   bool atStart_ = false;   // some pair meets at the start
   exact::PairName first_;  // the least of these
   Vector across_{};
+  Lead lead_;
 };
 
 /// How the pairs of a sensor and an object are judged (exact/blocking.h).
@@ -61,6 +71,8 @@ struct PairRule {
     if (nearing != Nearing::open) return nearing == Nearing::yes;
     return exact::blocksWithin(pair.a, pair.b, exact::courseOf(motion), clearance, slack, mirrored);
   }
+  /// Pairs with this lead do not block. What is pressed together may have sunk in by the slack.
+  Lead leadOf(const Motion& motion) const { return {motion.stands ? Vector{} : motion.unit, 2 * slack}; }
   bool arePressed(const exact::PlacedPair& pair, const Motion& motion) const {
     return exact::arePressed(pair.a, pair.b, exact::courseOf(motion), slack, mirrored);
   }

@@ -89,26 +89,25 @@ class Opener {
   float scale_;  // of A's nodes in B's frame
 };
 
-/// With a clearance: tells nodes that stay farther apart than it until the latest time that matters, by their extents
-/// across the gap of a pair found so far. Slabs along the meshes' axes let pass what is up to 1.7 clearances away.
+/// Tells nodes that stay farther apart than a distance, by their extents along a normal.
 class GapTest {
  public:
   explicit GapTest(const MeshPair& pair) : pair_(pair) {}
 
-  void update(const PairVisitor& visitor) {
+  /// `n`: from B to A, or 0: nothing is known. `distance`: world units. `latest`: of the visitor's.
+  void set(const Vector& n, double distance, double latest) {
     const PairMotion& motion = pair_.motion;
-    const Vector& n = visitor.across();
-    isKnown_ = motion.clearance > 0 && n != Vector{};
+    isKnown_ = n != Vector{};
     if (!isKnown_) return;
     // The height of A above B, but for their nodes' places, falls at a constant rate or does not fall.
-    const double way = motion.timeOf(visitor.latest()) * dot(n, motion.travel);
+    const double way = motion.timeOf(latest) * dot(n, motion.travel);
     const MeshPlacement &a = pair_.sensor.placement, &b = pair_.other.placement;
     for (int k = 0; k < 3; ++k) {
       alongA_[k] = n[0] * a.linear[0][k] + n[1] * a.linear[1][k] + n[2] * a.linear[2][k];
       alongB_[k] = n[0] * b.linear[0][k] + n[1] * b.linear[1][k] + n[2] * b.linear[2][k];
     }
     // PairMotion::rounding holds 32 ulp of all that is summed here and below.
-    height_ = dot(n, motion.gap) + std::min(way, 0.0) - (1 + 0x1p-20) * std::sqrt(dot(n, n)) * motion.clearance -
+    height_ = dot(n, motion.gap) + std::min(way, 0.0) - (1 + 0x1p-20) * std::sqrt(dot(n, n)) * distance -
               2 * reachAlong(n, motion.rounding);
   }
 
@@ -240,9 +239,16 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
   Leaves<Real> leaves(pair);
   const Opener opener(pair);
   const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(visitor.latest())); };
-  float latest = latestNow();
-  GapTest gap(pair);
-  gap.update(visitor);
+  float latest = 0;
+  // With a clearance, slabs along the meshes' axes let pass what is up to 1.7 clearances away. The gap of a pair found
+  // so far tells more.
+  GapTest gap(pair), lead(pair);
+  const auto update = [&] {
+    latest = latestNow();
+    gap.set(pair.motion.clearance > 0 ? visitor.across() : Vector{}, pair.motion.clearance, visitor.latest());
+  };
+  update();
+  lead.set(visitor.lead().way, visitor.lead().by, visitor.latest());
   uint32_t visits = 0;
 
   open_.resize(3 * (size_t{treeA.depth} + treeB.depth) + 4);
@@ -253,14 +259,13 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
     if (pairNow.near > latest) continue;
     if (visitor.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
     const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
-    if (gap.keepApart(a, b)) continue;
+    if (gap.keepApart(a, b) || lead.keepApart(a, b)) continue;
     // To decide a pair of triangles may take as long as to test very many nodes.
     const bool areLeaves = isLeaf(a) && isLeaf(b);
     if (areLeaves || ++visits % kVisits == 0) throwIfStopped(stop);
     if (areLeaves) {
       meetLeaves(pair, leaves, a, b, pairNow.near, visitor, pairs);
-      latest = latestNow();
-      gap.update(visitor);
+      update();
       continue;
     }
     const Opener::Parts parts = opener.open(pairNow.a, pairNow.b);

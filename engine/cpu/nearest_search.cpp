@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace radar::cpu {
 
@@ -37,12 +38,16 @@ struct PlacedNode {
 };
 
 /// Bound on the distance of what two nodes hold: of their boxes along the world's axes, or along the line of their
-/// middles.
-double leastBetween(const PlacedNode& a, const PlacedNode& b, const Vector& rounding) {
+/// middles; infinite if all pairs have the lead.
+double leastBetween(const PlacedNode& a, const PlacedNode& b, const Vector& rounding, const Lead& lead) {
   Vector apart, gap;
   for (int i = 0; i < 3; ++i) {
     apart[i] = a.middle[i] - b.middle[i];
     gap[i] = std::max(std::abs(apart[i]) - a.half[i] - b.half[i] - rounding[i], 0.0);
+  }
+  const double ahead = dot(lead.way, apart) - a.reachAlong(lead.way) - b.reachAlong(lead.way);
+  if (ahead - radar::reachAlong(lead.way, rounding) > (1 + 8 * kUnit) * lead.by) {
+    return std::numeric_limits<double>::infinity();
   }
   const double length = std::sqrt(dot(apart, apart)), boxes = std::sqrt(dot(gap, gap));
   if (!(length > 0)) return boxes;
@@ -64,7 +69,7 @@ void NearestSearch::run(const PlacedMesh& sensor, const PlacedMesh& other, Objec
   const auto placedA = [&](uint32_t a) { return PlacedNode(ofA, gap, treeA.nodes[a]); };
   const auto placedB = [&](uint32_t b) { return PlacedNode(ofB, {}, treeB.nodes[b]); };
   const auto openOf = [&](uint32_t a, uint32_t b) {
-    return Open{leastBetween(placedA(a), placedB(b), rounding), a, b};
+    return Open{leastBetween(placedA(a), placedB(b), rounding, nearest.lead()), a, b};
   };
   open_ = {openOf(0, 0)};
   for (uint32_t visits = 1; !open_.empty(); ++visits) {

@@ -324,3 +324,20 @@ TEST_CASE("a clearance larger than the shapes opens few pairs of triangles, befo
   CHECK(move().results[0].status == Status::overlap);
   CHECK(move().stats.pairs < all / 100);
 }
+
+TEST_CASE("of shapes that leave each other, a clearance larger than they opens few pairs of triangles") {
+  Scene scene;
+  const MeshId shape = add(scene, tools::makeUvSphere(20, 20));
+  scene.addObject({shape, at(-3, 0.1, 0.2)});
+  Query query{.mesh = shape, .worldFromMesh = at(0, 0, 0), .direction = {1, 0, 0}, .distance = 300};
+  query.clearance = 12;
+  query.ignoreLeaving = true;
+  const auto move = [&] { return CpuSweeper(scene, 1).run({&query, 1}); };
+  const uint64_t all = uint64_t{scene.mesh(shape).triangleCount()} * scene.mesh(shape).triangleCount();
+  CHECK(move().results[0].status == Status::clear);
+  CHECK(move().stats.pairs < all / 100);
+  const ObjectId ahead = scene.addObject({shape, at(13, 0, 0)});
+  CHECK(move().results[0].status == Status::overlap);
+  CHECK(move().results[0].object == ahead);
+  CHECK(move().stats.pairs < all / 10);
+}

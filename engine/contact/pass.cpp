@@ -139,7 +139,8 @@ GpuScene::Staged ContactPass::beginStaging(uint32_t searches, const Scene::Impl&
 GpuScene::Staged ContactPass::stage(const SearchPlan& batch, std::span<const Result> known, const Scene::Impl& scene,
                                     GpuScene::Overwritten next) {
   ignoresLeaving_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::ignoreLeaving);
-  hasClearances_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::hasClearance);
+  hasClearances_ =
+      std::ranges::any_of(batch.stated, [](const gpu::StatedSearch& search) { return search.clearance > 0; });
   if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
   checkExcluded(*device_, batch.excluded.size());
   GpuScene::Staged staged = beginStaging(batch.count(), scene, std::move(next));

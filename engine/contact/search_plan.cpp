@@ -98,7 +98,7 @@ Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& 
   search.endExcluded = static_cast<uint32_t>(excluded.size());
 
   gpu::Sweep sweep = sweepOf(query, motion, direction, result);
-  sweep.hasClearance = query.clearance > 0 ? 1 : 0;
+  sweep.cpuDecides = query.clearance > 0 ? 1 : 0;
   if (query.ignoreLeaving) {
     sweep.ignoreLeaving = 1;
     sweep.isMirrored = exact::isMirroring(query.worldFromMesh) ? 1 : 0;

@@ -13,7 +13,8 @@
 namespace radar::cpu {
 
 /// How narrow the bracket of a query with a clearance is to be, world units: Query::tolerance, or by default a share of
-/// the longest side of the sensor's box. A larger one would save next to nothing. Without a clearance: 0.
+/// the longest side of the sensor's box, or of the clearance if that is longer. A larger one would save next to nothing.
+/// Without a clearance: 0.
 double toleranceOf(const Query& query, const Mesh& sensor);
 
 /// The answer does not depend on the order of the pairs, nor on those that come later than contact by the tolerance.

@@ -81,7 +81,7 @@ void main() {
   if (i >= counts.refinedPairs) return;
   const RefinedPair c = refinedPairs[i];
   const Sweep sweep = sweeps[c.sensor];
-  if (sweep.hasClearance != 0) return;
+  if (sweep.cpuDecides != 0) return;
   bool certain = false;
   if (c.feature < kFeatures && sweep.ignoreLeaving == 0) {
     dvec3 a[3], b[3];

@@ -35,9 +35,8 @@ const float kMostDistance = 4398046511104.0;
 const int kLeastExponent = -100;
 // A sensor smaller than this share of the scene's extent, 2^-38, is scaled to less than 1, so that distances stay below 2^40.
 const float kLeastShare = 3.64e-12;
-// Scaled, 2^29: larger clearances are left to the CPU, for node_pair.glsl multiplies such lengths; so are clearances below 2^-40
-// of the scene's extent, which the CPU's doubles may be unable to tell from 0.
-const float kMostClearance = 536870912.0, kLeastClearance = 9.2e-13;
+// Clearances below this share of the scene's extent, 2^-40, are left to the CPU, whose doubles may be unable to tell them from 0.
+const float kLeastClearance = 9.2e-13;
 
 // Whether floats hold the placed mesh's coordinates, and their terms.
 bool holdsTerms(Transform t, MeshRecord mesh) {
@@ -78,8 +77,10 @@ uint encode(uint i, StatedSearch s, out uint hi) {
   sensor.placement.mesh = s.mesh;
   const PlacedBox box = boxOf(t, mesh, position, push.anchor, push.anchorLow);
   const float farthest = s.start == kNobody ? 0.0 : farthestFrom(box.centre);
-  const float size = max(sensor.placement.size, kLeastShare * farthest);
-  if (sensor.placement.perUnit <= 0.0 || size < 1.0 / kMostCoordinate || farthest > 8.0 * kMostCoordinate) {
+  // A point with a clearance is as large as its ball.
+  const float size = max(max(sensor.placement.size, s.clearance), kLeastShare * farthest);
+  if (sensor.placement.perUnit <= 0.0 || size < 1.0 / kMostCoordinate || farthest > 8.0 * kMostCoordinate ||
+      s.clearance > kMostCoordinate) {
     return kSearchOutOfRange;
   }
   const int sizeExponent = int(floatBitsToUint(size) >> 23) - 127, exponent = s.exponent - sizeExponent;
@@ -88,11 +89,9 @@ uint encode(uint i, StatedSearch s, out uint hi) {
   sensor.distance = scaledDistance(s.way, exponent);
   sensor.stopBefore = scaledDistance(s.stopBefore, exponent);
   if (sensor.distance < 0.0 || (s.perWay > 0.0 && exponent > 120)) return kSearchOutOfRange;
-  if (s.clearance > 0.0 && (s.clearance > kMostClearance * sensor.unscale ||
-                            s.clearance < kLeastClearance * (2.0 * sensor.unscale + farthest))) {
-    return kSearchOutOfRange;
-  }
-  const float tolerance = min(s.tolerance, 2.00001e-6 * max(box.halfExtent.x, max(box.halfExtent.y, box.halfExtent.z)));
+  if (s.clearance > 0.0 && s.clearance < kLeastClearance * (2.0 * sensor.unscale + farthest)) return kSearchOutOfRange;
+  const float side = 2.0 * max(box.halfExtent.x, max(box.halfExtent.y, box.halfExtent.z));
+  const float tolerance = min(s.tolerance, 1.00001e-6 * max(side, s.clearance));
   sensor.across = s.across;
   sensor.clearance = s.clearance * sensor.scale;
   sensor.upwards = s.upwards;

@@ -70,7 +70,7 @@ struct Sweep {
   float start;      // SearchState::hi below this is that of a certain contact before the end
   uint ignoreLeaving;  // only pairs that block count
   uint isMirrored;     // the pose turns the mesh inside out
-  uint hasClearance;   // the CPU decides all pairs that may be first; also where the length is not known to the last bit
+  uint cpuDecides;     // all pairs that may be first: with a clearance, or if the length is not known to the last bit
   float stepPerUnit;   // of a step: t per scaled length, rounded down; negative if nothing moves; of a sweep 0
   double slack;        // radar::Query::slack; negative: by default
   double magnitude;    // of the placed mesh, for the default; stated negative if only the device knows the mesh

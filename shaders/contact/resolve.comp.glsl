@@ -84,7 +84,7 @@ bool setCertainAnswer(PairSummary pairs, inout RadarResult r) {
 }
 
 RadarResult decide(SearchState state, bool met) {
-  if (sweeps[s].hasClearance != 0) return leaveAll(met);
+  if (sweeps[s].cpuDecides != 0) return leaveAll(met);
   const PairSummary pairs = summarise(hiOf(state));
   if (pairs.least.w == kNobody) return noContact(met);
   if (pairs.count == kMostListed) return invalid(RADAR_FLAG_candidates);

@@ -67,7 +67,7 @@ void writeSweep(uint i, HostQuery q, int directionExponent) {
   sweep.anyHit = q.flags & kQueryAnyHit;
   sweep.result = i;
   sweep.scale = sweep.start = 0.0;
-  sweep.ignoreLeaving = sweep.isMirrored = sweep.hasClearance = 0;
+  sweep.ignoreLeaving = sweep.isMirrored = sweep.cpuDecides = 0;
   sweep.stepPerUnit = 0.0;
   const uvec2 x = scaledBits(q.direction.x, directionExponent), y = scaledBits(q.direction.y, directionExponent),
               z = scaledBits(q.direction.z, directionExponent), distance = doubleBits(q.distance);
@@ -81,7 +81,7 @@ void writeSweep(uint i, HostQuery q, int directionExponent) {
   sweep.direction = double[3](d.x, d.y, d.z);
   sweep.directionLength = sweep.perParameter = lengthOf(d);
   sweep.drift = double[3](0.0LF, 0.0LF, 0.0LF);
-  sweep.hasClearance = sweep.directionLength == 0.0LF ? 1 : 0;
+  sweep.cpuDecides = sweep.directionLength == 0.0LF ? 1 : 0;
   sweep.slack = sweep.magnitude = 0.0LF;
   sweep.distance = packDouble2x32(distance);
 #endif

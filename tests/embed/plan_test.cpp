@@ -94,7 +94,7 @@ void checkSweep(const gpu::Sensor& sensor, const gpu::Sweep& sweep, const Query&
   CHECK(std::equal(direction.begin(), direction.end(), sweep.direction));
   CHECK(sweep.distance == query.distance);
   if (test::device().doubles()) {
-    CHECK((sweep.directionLength == exact::length(direction) || sweep.hasClearance == 1));
+    CHECK((sweep.directionLength == exact::length(direction) || sweep.cpuDecides == 1));
   } else {
     CHECK(sweep.directionLength == 0);
   }

@@ -3,6 +3,7 @@
 #include "embed/on_device.h"
 #include "embed/renderer.h"
 #include "fuzz/check_recorded.h"
+#include "support/small_scenes.h"
 
 using namespace radar;
 using test::kRoom;
@@ -41,6 +42,34 @@ TEST_CASE("recorded answers equal a sweeper's, on the device and read back", "[s
     if (test::device().doubles() && family.name == "convex") CHECK(unresolved <= 2);
   }
   CHECK(outcomes.areExact());
+}
+
+TEST_CASE("a recorded point with a clearance is a ball, whatever its size, and heeds its tolerance") {
+  Scene scene;
+  const std::vector<float> corners(9, 0.0f);
+  const std::vector<uint32_t> triangle{0, 1, 2};
+  const MeshId point = scene.addMesh(corners, triangle), box = test::addBox(scene);
+  for (int i = -2; i <= 2; ++i) scene.addObject({.mesh = box, .worldFromMesh = test::at(3.0 * i, 0, 40)});
+  std::vector<Query> queries;
+  for (const double radius : {1e-3, 0.25, 3.0, 30.0}) {
+    for (const std::optional<double> tolerance : {std::optional<double>(), std::optional(1e-9)}) {
+      queries.push_back(
+          {.mesh = point, .worldFromMesh = test::at(0.1, 0.2, 0), .direction = {0, 0, 1}, .distance = 100});
+      queries.back().clearance = radius;
+      queries.back().tolerance = tolerance;
+    }
+  }
+  Recorder recorder(test::device(), scene, kRoom);
+  const std::vector<Result> read = test::execute(recorder, queries);
+  test::checkSame(read, test::expectedOf(scene, queries));
+  for (size_t i = 0; i < queries.size(); ++i) {
+    CAPTURE(i);
+    const double radius = queries[i].clearance, contact = 39.5 - radius;
+    CHECK(read[i].status == Status::hit);
+    CHECK(read[i].lo <= contact + 1e-13);
+    CHECK(read[i].hi >= contact - 1e-13);
+    CHECK(read[i].hi - read[i].lo <= queries[i].tolerance.value_or(1e-6 * radius));
+  }
 }
 
 TEST_CASE("changes of the scene after the recording do not affect reading") {

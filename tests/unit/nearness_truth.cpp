@@ -216,7 +216,8 @@ void NearTruth::add(radar::ObjectId id) {
   const Point way = distances::pointOf<Real>(directionPast(scene_, query_, id));
   const Real length = way.norm(), whole = step ? length : query_.distance;
   const Point unit = length > 0 ? Point(way / length) : way;
-  const Real usual = 1e-6L * radar::tools::boundsOf(sensor, query_.worldFromMesh).longest();
+  const Real longest = radar::tools::boundsOf(sensor, query_.worldFromMesh).longest();
+  const Real usual = 1e-6L * std::max(longest, Real(query_.clearance));
   const Course course{id, unit, whole,
                       !step       ? 1
                       : whole > 0 ? end_ / whole

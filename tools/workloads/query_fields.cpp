@@ -60,7 +60,9 @@ constexpr QueryField kFields[] = {
      .option = true},
     {.name = "tolerance",
      .member = &Query::tolerance,
-     .about = "With a clearance: how narrow the bracket of the distance is to be; else 1e-6 of the sensor's size",
+     .about =
+         "With a clearance: how narrow the bracket of the distance is to be; else 1e-6 of the sensor's size, or of the "
+         "clearance if that is more",
      .python = "tolerance"},
 };
 

@@ -12,19 +12,16 @@ namespace radar {
 namespace {
 
 void addDeformed(DeformedList& list, const DeformedMesh& deformed, uint32_t firstByte, const Mesh& mesh) {
-  const bool areListed = !mesh.hostVertices.empty();
   gpu::Deformed added{.mesh = deformed.mesh,
                       .vertices = mesh.vertexCount(),
                       .triangles = mesh.triangleCount(),
                       .firstByte = firstByte,
                       .stride = static_cast<uint32_t>(deformed.positions.stride),
                       .format = HostFormat(deformed.positions.format).component(),
-                      .numbers = areListed ? static_cast<uint32_t>(list.vertexNumbers.size()) : gpu::kNobody,
                       .extent = gpu::kNobody};
   std::ranges::copy(list.groups, added.firstGroup);
   list.groups[gpu::kByDeform] += gpu::groupsFor(added.vertices, gpu::kHostGroup);
-  for (const uint32_t vertex : mesh.hostVertices) list.vertexNumbers.push_back(vertex - mesh.firstHostVertex);
-  if (!mesh.deforms) {
+  if (!mesh.hasBounds) {
     added.extent = static_cast<uint32_t>(list.unbounded.size());
     list.groups[gpu::kByBound] += gpu::groupsFor(added.triangles, gpu::kHostGroup * gpu::kBoundRun);
     list.unbounded.push_back(deformed.mesh);

@@ -18,7 +18,6 @@ struct DeformedList {
   std::vector<uint64_t> key{};  ///< all that the rest depends on
   std::vector<gpu::Deformed> meshes{};
   std::vector<uint32_t> firstHostVertices{};  ///< of each of them
-  std::vector<uint32_t> vertexNumbers{};      ///< less the first's
   std::vector<MeshId> unbounded{};            ///< those without bounds
   std::array<uint32_t, 2> groups{};           ///< workgroups of deform.comp and bound.comp
   std::vector<gpu::RefitNode> refitNodes{};

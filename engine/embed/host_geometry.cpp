@@ -58,7 +58,6 @@ HostGeometryPass::HostGeometryPass(const gpu::Owner& owner, const GpuScene& resi
                    shaders::kFit, shaders::kInvalidate}),
       upload_(owner),
       words_(owner, "host words", BufferDomain::device, kUploaded),
-      numbers_(owner, "host vertex numbers", BufferDomain::device, kUploaded),
       unboundedMeshes_(owner, "unbounded meshes", BufferDomain::device, kUploaded),
       fitNodes_(owner, "nodes to fit", BufferDomain::device, kUploaded),
       deformedMeshes_(owner, "deformed meshes", BufferDomain::device, kUploaded),
@@ -90,8 +89,8 @@ std::vector<uint32_t> HostGeometryPass::copyFrom(const HostGeometry& geometry, c
   for (const DeformedMesh& deformed : geometry.meshes) {
     const Mesh& mesh = scene.meshes[deformed.mesh];
     const HostPositions& from = deformed.positions;
-    const uint32_t least = mesh.firstHostVertex, span = mesh.hostVertex(mesh.vertexCount() - 1) - least + 1;
-    copy(from.buffer, from.first + from.stride * least, spanOf(from, span));
+    copy(from.buffer, from.first + from.stride * mesh.firstHostVertex,
+         spanOf(from, mesh.hostVertex(mesh.vertexCount() - 1) + 1));
   }
   for (const MovedObjects& moved : geometry.objects) {
     copy(moved.transforms, moved.first, spanOf(moved.stride, moved.objects.size(), extentOf(moved.layout)));
@@ -123,13 +122,11 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
 void HostGeometryPass::stageDeformed() {
   deformedMeshes_.reserve(deformed_.meshes.size());
   refitNodes_.reserve(deformed_.refitNodes.size());
-  numbers_.reserve(deformed_.vertexNumbers.size());
   unboundedMeshes_.reserve(deformed_.unbounded.size());
   extents_.reserve(deformed_.unbounded.size());
   readback_.reserve(deformed_.unbounded.size());
   upload_.add(deformed_.meshes.data(), gpu::bytesOf(deformed_.meshes), deformedMeshes_);
   upload_.add(deformed_.refitNodes.data(), gpu::bytesOf(deformed_.refitNodes), refitNodes_);
-  upload_.add(deformed_.vertexNumbers.data(), gpu::bytesOf(deformed_.vertexNumbers), numbers_);
   upload_.add(deformed_.unbounded.data(), gpu::bytesOf(deformed_.unbounded), unboundedMeshes_);
 }
 
@@ -162,7 +159,6 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
        {{kSlotVertices, to.vertices},
         {kSlotMeshes, to.meshes},
         {kSlotBoundsViolation, violation_},
-        {kSlotVertexNumbers, numbers_},
         {kSlotWords, words_},
         {kSlotDeformed, deformedMeshes_}});
   if (unbounded != 0) {
@@ -245,11 +241,8 @@ std::string HostGeometryPass::boundsViolation() const {
   for (size_t i = 0; i < deformed_.meshes.size(); ++i) {
     const gpu::Deformed& deformed = deformed_.meshes[i];
     if (violation.mesh != deformed.mesh) continue;
-    const uint32_t number = deformed.numbers == gpu::kNobody
-                                ? violation.vertex
-                                : deformed_.vertexNumbers[deformed.numbers + violation.vertex];
     return "mesh " + std::to_string(violation.mesh) + ": vertex " +
-           std::to_string(deformed_.firstHostVertices[i] + number) +
+           std::to_string(deformed_.firstHostVertices[i] + violation.vertex) +
            (deformed.extent == gpu::kNobody ? " is outside its bounds or not finite"
                                             : " is not finite, or exceeds 2^120");
   }

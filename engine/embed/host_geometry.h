@@ -64,7 +64,7 @@ class HostGeometryPass {
   const GpuScene& resident_;
   gpu::Passes run_;
   gpu::Upload upload_;
-  gpu::Array<uint32_t> words_, numbers_, unboundedMeshes_, fitNodes_;
+  gpu::Array<uint32_t> words_, unboundedMeshes_, fitNodes_;
   gpu::Array<gpu::Deformed> deformedMeshes_;
   gpu::Array<gpu::RefitNode> refitNodes_;
   gpu::Array<gpu::Moved> movedObjects_;

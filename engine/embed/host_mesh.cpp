@@ -76,7 +76,7 @@ MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
   for (size_t v = 0; v < places.size(); ++v) {
     if (places[v] == 0) continue;
     places[v] = static_cast<uint32_t>(numbers.size());
-    numbers.push_back(least + static_cast<uint32_t>(v));
+    numbers.push_back(static_cast<uint32_t>(v));
     for (int k = 0; k < 3; ++k) positions.push_back(format.load(copy.mapped() + from.stride * v, k));
   }
   for (uint32_t& vertex : indices) vertex = places[vertex - least];

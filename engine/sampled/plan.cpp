@@ -102,7 +102,7 @@ void Planner::lookAlong() {
   for (int i = 0; i < 9; ++i) turn_[4 * (i / 3) + i % 3] = plan_.axes[i / 3][i % 3];
   plan_.mask = framed(kNone, query_.mesh, query_.worldFromMesh);
   const Affine& m = plan_.mask.frameFromMesh;
-  window_ = !sensor_.deforms && fitsFloats(sensor_, m) ? tightBox(sensor_, m) : boxOfLocal(sensor_, m);
+  window_ = !sensor_.hasBounds && fitsFloats(sensor_, m) ? tightBox(sensor_, m) : boxOfLocal(sensor_, m);
   plan_.length = window_.hi[2] - window_.lo[2];
   plan_.d = plan_.length + query_.distance;
   for (int k = 0; k < 3; ++k) size_ = std::max(size_, window_.hi[k] - window_.lo[k]);

@@ -225,7 +225,10 @@ void GpuScene::describe(MeshId id, const Mesh& mesh) {
 
 void GpuScene::stageMesh(const Mesh& mesh, const gpu::MeshRecord& record, Upload& upload) const {
   std::vector<gpu::Vertex> vertices(mesh.vertexCount());
-  for (size_t v = 0; v < vertices.size(); ++v) std::copy_n(&mesh.positions[3 * v], 3, vertices[v].position);
+  for (uint32_t v = 0; v < vertices.size(); ++v) {
+    std::copy_n(&mesh.positions[3 * size_t{v}], 3, vertices[v].position);
+    vertices[v].number = mesh.hostVertex(v);
+  }
   std::vector<gpu::Triangle> triangles;
   triangles.reserve(mesh.triangleCount());
   for (const uint32_t id : mesh.tree.order) {

@@ -227,7 +227,7 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   mesh.positions.assign(positions.begin(), positions.end());
   mesh.indices.assign(indices.begin(), indices.end());
   mesh.used = true;
-  mesh.deforms = bounds.has_value();
+  mesh.hasBounds = bounds.has_value();
   mesh.version = nextVersion();
   Box box;
   if (bounds) box = boxOf("addMesh", *bounds);
@@ -259,8 +259,8 @@ void Scene::setPositions(MeshId id, std::span<const float> positions) {
                 std::to_string(positions.size()));
   }
   requireFinite("setPositions", positions);
-  if (mesh.deforms) requireInside(mesh, positions);
-  const Box bounds = mesh.deforms ? boundsOf(mesh) : Box{};
+  if (mesh.hasBounds) requireInside(mesh, positions);
+  const Box bounds = mesh.hasBounds ? boundsOf(mesh) : Box{};
   const std::vector<float> before = mesh.positions;
   const auto move = [&](std::span<const float> to) {  // in place: a MeshView shows them
     std::copy(to.begin(), to.end(), mesh.positions.begin());

@@ -24,10 +24,10 @@ struct Mesh {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
   bool used = false;
-  bool deforms = false;          ///< a host may move its vertices, within `reach` of the origin
+  bool hasBounds = false;        ///< declared, within which a host may move its vertices
   uint32_t objects = 0;          ///< number of objects that use it
   uint32_t firstHostVertex = 0;  ///< the number of vertex 0 in a host's buffer
-  /// The numbers of all vertices there; empty if they are consecutive.
+  /// The numbers of all vertices there, less that one; empty if they are consecutive.
   std::vector<uint32_t> hostVertices;
   uint64_t version = 0;  ///< unique over all meshes of all scenes; compared with a device copy's
 
@@ -45,10 +45,8 @@ struct Mesh {
   double unit = 1;
   MeshTree tree;
 
-  /// The number of a vertex in a host's buffer.
-  uint32_t hostVertex(uint32_t vertex) const {
-    return hostVertices.empty() ? firstHostVertex + vertex : hostVertices[vertex];
-  }
+  /// gpu::Vertex::number.
+  uint32_t hostVertex(uint32_t vertex) const { return hostVertices.empty() ? vertex : hostVertices[vertex]; }
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
   float normalised(uint32_t vertex, int axis) const {

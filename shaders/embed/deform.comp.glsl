@@ -10,12 +10,11 @@ layout(local_size_x = kHostGroup) in;
 // A Vertex whose position is copied as bits: copying it as floats may flush subnormals to 0.
 struct VertexBits {
   uvec3 position;
-  uint pad;
+  uint number;
 };
-layout(scalar, binding = kSlotVertices) writeonly restrict buffer Vertices { VertexBits vertices[]; };
+layout(scalar, binding = kSlotVertices) restrict buffer Vertices { VertexBits vertices[]; };
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
 layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations { BoundsViolation violation; };
-layout(scalar, binding = kSlotVertexNumbers) readonly restrict buffer VertexNumbers { uint vertexNumbers[]; };
 #include "byte_load.glsl"
 #include "deformed.glsl"
 #include "shared/workgroup.glsl"
@@ -58,16 +57,15 @@ void main() {
   const Deformed own = deformed[deformedOf(group, kByDeform, push.meshes)];
   const uint i = (group - own.firstGroup[kByDeform]) * kHostGroup + gl_LocalInvocationID.x;
   if (i >= own.vertices) return;
-  const uint number = own.numbers == kNobody ? i : vertexNumbers[own.numbers + i];
-  const uint at = own.firstByte + number * own.stride;
+  const MeshRecord mesh = meshes[own.mesh];
+  const uint to = mesh.firstVertex + i, number = vertices[to].number, at = own.firstByte + number * own.stride;
   const uvec3 bits =
       uvec3(component(own.format, at, 0), component(own.format, at, 1), component(own.format, at, 2));
-  const MeshRecord mesh = meshes[own.mesh];
   const vec3 local = uintBitsToFloat(bits) - mesh.origin;
   // Bounds are at most 2^120; differences of coordinates from 2^121 on might overflow.
   const bool outside = any(greaterThanEqual(bits >> 23 & 0xffu, uvec3(0xf8u))) ||
                       own.extent == kNobody && (any(greaterThan(local, mesh.hi)) || any(greaterThan(mesh.lo, local)));
-  if (outside && atomicCompSwap(violation.mesh, kNobody, own.mesh) == kNobody) atomicExchange(violation.vertex, i);
+  if (outside && atomicCompSwap(violation.mesh, kNobody, own.mesh) == kNobody) atomicExchange(violation.vertex, number);
   // The recording is invalid now, but the search must still terminate, so any position that is in range is written.
-  vertices[mesh.firstVertex + i].position = outside ? floatBitsToUint(mesh.origin + mesh.lo) : bits;
+  vertices[to].position = outside ? floatBitsToUint(mesh.origin + mesh.lo) : bits;
 }

@@ -17,7 +17,7 @@ INTEROP_CONST kUnorm16 = 3;
 // One vertex and one object that are outside their bounds, or not finite. kNobody: none.
 struct BoundsViolation {
   uint mesh;
-  uint vertex;
+  uint vertex;  // Vertex::number
   uint object;
 };
 
@@ -57,7 +57,6 @@ struct Deformed {
   uint firstByte;  // of the first position, in the copied words
   uint stride;     // bytes from one position to the next
   uint format;     // kFloat32 ...
-  uint numbers;    // where the list of positions' numbers has the first vertex's; kNobody: they are consecutive
   uint extent;     // index of its Extent; kNobody: it has declared bounds
 };
 
@@ -134,7 +133,6 @@ INTEROP_SLOT(kSlotRefitNodes, 26, RefitNode);  // roots first
 INTEROP_SLOT(kSlotGathered, 27, Gathered);
 INTEROP_SLOT(kSlotOrder, 29, uint);  // of searches
 INTEROP_SLOT(kSlotFitNodes, 28, uint);  // inner nodes of the tree over objects, parents first
-INTEROP_SLOT(kSlotVertexNumbers, 20, uint);  // of deformed meshes, in the host's buffers
 INTEROP_SLOT(kSlotUnbounded, 21, uint);      // meshes
 INTEROP_SLOT(kSlotExtents, 22, Extent);      // of those
 

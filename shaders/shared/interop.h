@@ -57,7 +57,7 @@ struct ObjectNode {
 // Vertices and triangles; one buffer each for all meshes.
 struct Vertex {
   Point position;  // as given
-  uint pad;
+  uint number;     // in a host's buffer, less that of the mesh's first
 };
 struct Triangle {
   uint corners[3];  // vertices

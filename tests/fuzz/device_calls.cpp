@@ -58,7 +58,7 @@ std::vector<Query> recordable(SceneCalls& calls, Recorder& recorder, const Capac
 struct Deformation {
   Deformation(Choices& choices, const Scene& scene) : truth(test::SceneModel::of(scene).build()) {
     for (MeshId id = 0; id < scene.meshLimit(); ++id) {
-      if (!scene.hasMesh(id) || scene.impl().meshes[id].deforms || !choices.oneIn(2)) continue;
+      if (!scene.hasMesh(id) || scene.impl().meshes[id].hasBounds || !choices.oneIn(2)) continue;
       std::vector<float> positions(scene.mesh(id).positions.begin(), scene.mesh(id).positions.end());
       const bool isWild = choices.oneIn(4);
       for (float& x : positions) {

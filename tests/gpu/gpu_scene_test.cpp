@@ -37,7 +37,10 @@ void checkMesh(const Mesh& mesh, const gpu::MeshRecord& record, const GpuScene::
     CHECK(double{record.hi[k]} >= mesh.box.hi[k]);
   }
   std::vector<gpu::Vertex> vertices(mesh.vertexCount());
-  for (size_t v = 0; v < vertices.size(); ++v) std::copy_n(&mesh.positions[3 * v], 3, vertices[v].position);
+  for (uint32_t v = 0; v < vertices.size(); ++v) {
+    std::copy_n(&mesh.positions[3 * size_t{v}], 3, vertices[v].position);
+    vertices[v].number = v;
+  }
   CHECK(sameBits(elementsOf(buffers.vertices, record.firstVertex, mesh.vertexCount()), vertices));
   std::vector<gpu::Triangle> triangles;
   for (const uint32_t id : mesh.tree.order) {

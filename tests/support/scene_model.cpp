@@ -66,7 +66,7 @@ SceneModel SceneModel::of(const Scene& scene) {
     Mesh& copy = model.meshes[id];
     copy.positions.assign(mesh.positions.begin(), mesh.positions.end());
     copy.indices.assign(mesh.indices.begin(), mesh.indices.end());
-    if (const radar::Mesh& derived = scene.impl().meshes[id]; derived.deforms) copy.bounds = boundsOf(derived);
+    if (const radar::Mesh& derived = scene.impl().meshes[id]; derived.hasBounds) copy.bounds = boundsOf(derived);
   }
   for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
     if (scene.hasObject(id)) model.objects[id] = scene.object(id);

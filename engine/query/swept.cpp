@@ -50,12 +50,12 @@ Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object)
   return {displacementOf(query), object == kNone ? Vector{} : scene.objects[object].object.motion};
 }
 
-std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
+std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, const Box* start) {
   const Motion motion = motionPast(query, scene);
-  const double way = motion.wayUntil(motion.distance);
+  const auto wants = [way = motion.wayUntil(motion.distance)](double near) { return near <= way; };
   std::vector<ObjectId> found;
-  walk(
-      query, motion, scene, tree, [&](double near) { return near <= way; }, [&](ObjectId id) { found.push_back(id); });
+  const auto add = [&](ObjectId id) { found.push_back(id); };
+  walk(query, motion, scene, tree, wants, add, start);
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -35,8 +35,9 @@ class Participants {
 /// The sensor's motion past an object in a step, or past all objects in a sweep.
 Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object = kNone);
 
-/// The objects that take part and whose boxes the sensor may meet before its motion ends, in ascending order.
-std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
+/// In ascending order, the objects that take part and whose boxes the sensor may meet on its way. `start`: see `walk`.
+std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
+                              const Box* start = nullptr);
 
 namespace detail {
 
@@ -63,10 +64,10 @@ inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, 
 /// Calls `visit` with each object that takes part in a valid query and is in reach of its sensor, nearest first; all
 /// that take part, in ascending order, if the tree is out of range. `motion`: the sensor's. `wants`: bool(double near):
 /// whether objects still matter that are met after the sensor has moved by `near` world units, at the earliest. `visit`
-/// must not walk itself.
+/// must not walk itself. `start`: the box that moves; null: the sensor's, with room for its clearance and slack.
 template <class Wants, class Visit>
 void walk(const Query& query, const Motion& motion, const Scene::Impl& scene, const ObjectTree& tree,
-          const Wants& wants, const Visit& visit) {
+          const Wants& wants, const Visit& visit, const Box* start = nullptr) {
   const Participants participants(query, scene);
   if (!tree.inRange()) {
     for (ObjectId id = 0; id < scene.objects.size(); ++id) {
@@ -76,7 +77,7 @@ void walk(const Query& query, const Motion& motion, const Scene::Impl& scene, co
   }
   if (tree.nodes().empty()) return;
   const gpu::ObjectNode* const nodes = tree.nodes().data();
-  const SweptBox meets(detail::roomyBox(query, scene), motion, tree);
+  const SweptBox meets(start != nullptr ? *start : detail::roomyBox(query, scene), motion, tree);
   detail::OpenNode* const bottom = detail::openNodes(size_t{tree.depth()} + 2);
   detail::OpenNode* top = bottom;
   const auto push = [&](double near, const gpu::ObjectNode& node) {

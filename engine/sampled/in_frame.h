@@ -37,5 +37,13 @@ Box turned(const auto& centre, const auto& halfExtent, const Affine& m, double e
   }
   return box;
 }
+inline Box turned(const Box& box, const Affine& m, double error) {
+  Vector centre, half;
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = box.middle(k);
+    half[k] = 0.5 * (box.hi[k] - box.lo[k]);
+  }
+  return turned(centre, half, m, error);
+}
 
 }  // namespace radar

@@ -36,13 +36,9 @@ std::string outOfRange(const Query& query, const Scene::Impl& scene) {
   return {};
 }
 
-Box worldBox(const gpu::ObjectNode& node, const Vector& anchor) {
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = anchor[k] + (double(node.centre[k]) - node.halfExtent[k]);
-    box.hi[k] = anchor[k] + (double(node.centre[k]) + node.halfExtent[k]);
-  }
-  return box;
+// The greatest coordinate.
+double largestOf(const Box& box) {
+  return std::max(largest(box.lo), largest(box.hi));
 }
 
 // A plan in the making. Boxes are in the view's frame, unless noted otherwise.
@@ -60,14 +56,12 @@ class Planner {
  private:
   void lookAlong();
   void sweepWindow();
-  bool mayReach(const Box& world) const;
-  std::vector<ObjectId> objectsInPrism() const;
+  Box windowInWorld() const;
   void selectObjects();
   void setSweep();
   void setView();
   void setVisible();
   Placed framed(ObjectId object, MeshId mesh, const Transform& worldFromMesh) const;
-  Box inFrame(const Box& world) const;
   void place(Placed& placed, double scaleZ, double offsetZ) const;
   void placeInRange(Placed& placed) const;
   void addWhole(Placed& placed);
@@ -82,27 +76,28 @@ class Planner {
   const double subPixel_;
   const Drawn drawn_;
   ViewPlan plan_;
-  Vector origin_{};        // of the frame, in world coordinates: the sensor's centre
-  Affine turn_{};          // from the world, about the origin
-  Box window_;             // the sensor's extents, widened by `margin_` across
-  double margin_ = 0;      // world units
-  double size_ = 0;        // of the sensor, its greatest extent
-  Box prism_;              // the window, swept
-  Box prismInWorld_;       // around it, in world coordinates
-  double prismSlack_ = 0;  // bound on the rounding errors of tests against the prism
-  double depth_ = 0;       // from the back plane to the farthest object in the prism, at most d
-  double error_ = 0;       // the greatest placement error of an object in the prism
-  Box visible_;            // all that the scopes can show
+  Vector origin_{};  // of the frame, in world coordinates: the sensor's centre
+  Affine frameFromWorld_{};
+  Box window_;         // the sensor's extents, widened by `margin_` across
+  double margin_ = 0;  // world units
+  double size_ = 0;    // of the sensor, its greatest extent
+  Box prism_;          // the window, swept
+  double depth_ = 0;   // from the back plane to the farthest object in the prism, at most d
+  double error_ = 0;   // the greatest placement error of an object in the prism
+  Box visible_;        // all that the scopes can show
 };
 
 // Sets the frame and the window.
 void Planner::lookAlong() {
   plan_.axes = axesAlong(query_.direction);
   origin_ = transform(query_.worldFromMesh, sensor_.origin);
-  for (int i = 0; i < 9; ++i) turn_[4 * (i / 3) + i % 3] = plan_.axes[i / 3][i % 3];
+  for (int k = 0; k < 3; ++k) {
+    std::copy(plan_.axes[k].begin(), plan_.axes[k].end(), &frameFromWorld_[4 * k]);
+    frameFromWorld_[4 * k + 3] = -dot(plan_.axes[k], origin_);
+  }
   plan_.mask = framed(kNone, query_.mesh, query_.worldFromMesh);
   const Affine& m = plan_.mask.frameFromMesh;
-  window_ = !sensor_.hasBounds && fitsFloats(sensor_, m) ? tightBox(sensor_, m) : boxOfLocal(sensor_, m);
+  window_ = !sensor_.hasBounds && fitsFloats(sensor_, m) ? tightBox(sensor_, m) : turned(sensor_.box, m, 0);
   plan_.length = window_.hi[2] - window_.lo[2];
   plan_.d = plan_.length + query_.distance;
   for (int k = 0; k < 3; ++k) size_ = std::max(size_, window_.hi[k] - window_.lo[k]);
@@ -129,69 +124,33 @@ Placed Planner::framed(ObjectId object, MeshId mesh, const Transform& worldFromM
 void Planner::sweepWindow() {
   prism_ = window_;
   prism_.hi[2] = window_.lo[2] + plan_.d;
-  Vector middle, half;
-  Affine worldFromFrame;
   for (int k = 0; k < 3; ++k) {
     prism_.lo[k] -= plan_.mask.error;
     prism_.hi[k] += plan_.mask.error;
-    middle[k] = prism_.middle(k);
-    half[k] = 0.5 * (prism_.hi[k] - prism_.lo[k]);
+  }
+}
+
+// The box in the world around the window, with room for the sensor's placement error and for rounding.
+Box Planner::windowInWorld() const {
+  Affine worldFromFrame;
+  for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 3; ++i) worldFromFrame[4 * i + k] = plan_.axes[k][i];
     worldFromFrame[4 * k + 3] = origin_[k];
   }
-  prismInWorld_ = turned(middle, half, worldFromFrame, 0);
-  prismSlack_ = 0x1p-45 * std::max({largest(origin_), largest(prismInWorld_.lo), largest(prismInWorld_.hi),
-                                    largest(scene_.objectTree().anchor())});
-}
-
-// The box in the frame around a box in the world.
-Box Planner::inFrame(const Box& world) const {
-  Vector centre, half;
-  for (int k = 0; k < 3; ++k) {
-    centre[k] = 0.5 * (world.lo[k] + world.hi[k]) - origin_[k];
-    half[k] = 0.5 * (world.hi[k] - world.lo[k]);
-  }
-  return turned(centre, half, turn_, 0x1p-47 * (std::max(largest(world.lo), largest(world.hi)) + largest(origin_)));
-}
-
-// Tests the world's axes and the prism's as separating axes. Cross products are not tested, since tighter tests of the
-// objects follow.
-bool Planner::mayReach(const Box& world) const {
-  return overlap(world, prismInWorld_, prismSlack_) && overlap(inFrame(world), prism_, prismSlack_);
-}
-
-// Not the walk of query/swept.h: its swept box and the prism differ in the window's margin, and so in what they leave
-// out, on which the depth of the pictures depends.
-std::vector<ObjectId> Planner::objectsInPrism() const {
-  const ObjectTree& tree = scene_.objectTree();
-  const Participants participants(query_, scene_);
-  std::vector<ObjectId> found;
-  thread_local std::vector<uint32_t> open;
-  open.assign(tree.nodes().empty() ? 0 : 1, 0);
-  while (!open.empty()) {
-    const gpu::ObjectNode& node = tree.nodes()[open.back()];
-    open.pop_back();
-    const uint32_t item = node.link & gpu::kLinkItem;
-    const bool isLeaf = (node.link & gpu::kLinkLeaf) != 0;
-    if (!mayReach(isLeaf ? objectBox(scene_, item) : worldBox(node, tree.anchor()))) continue;
-    if (!isLeaf) {
-      open.insert(open.end(), {item, item + 1});
-    } else if (participants.contain(item)) {
-      found.push_back(item);
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
+  return turned(window_, worldFromFrame, 2 * plan_.mask.error + 0x1p-45 * (largestOf(window_) + largest(origin_)));
 }
 
 // Sets inReach to the objects in the prism, and their depth and error.
 void Planner::selectObjects() {
   double farthest = window_.lo[2];
-  for (const ObjectId id : objectsInPrism()) {
+  const Box start = windowInWorld();
+  for (const ObjectId id : inReach(query_, scene_, scene_.objectTree(), &start)) {
     const Object& object = scene_.objects[id].object;
     const Placed placed = framed(id, object.mesh, object.worldFromMesh);
-    Box box = boxOfLocal(scene_.meshes[object.mesh], placed.frameFromMesh);
-    if (const Box* bounds = scene_.boundsOf(id)) box.merge(inFrame(*bounds));
+    Box box = turned(scene_.meshes[object.mesh].box, placed.frameFromMesh, 0);
+    if (const Box* bounds = scene_.boundsOf(id)) {
+      box.merge(turned(*bounds, frameFromWorld_, 0x1p-47 * (largestOf(*bounds) + largest(origin_))));
+    }
     if (!overlap(box, prism_, doubleError(scene_.meshes[object.mesh], object.worldFromMesh, origin_))) continue;
     farthest = std::max(farthest, box.hi[2]);
     error_ = std::max(error_, placed.error);
@@ -359,7 +318,7 @@ void Planner::addOthers() {
     const Object& object = scene_.objects[id].object;
     if (!scene_.objects[id].used || !participants.contain(id)) continue;
     Placed placed = framed(id, object.mesh, object.worldFromMesh);
-    const Box box = boxOfLocal(scene_.meshes[object.mesh], placed.frameFromMesh);
+    const Box box = turned(scene_.meshes[object.mesh].box, placed.frameFromMesh, 0);
     if (overlap(box, visible_, 2 * placed.error)) continue;
     placeInRange(placed);
     if (!placed.fits) continue;

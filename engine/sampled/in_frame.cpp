@@ -6,11 +6,10 @@
 namespace radar {
 
 bool staysBelow(const Vector& most, const Mesh& mesh, const Affine& m, double least) {
+  Vector sizes;
+  for (int k = 0; k < 3; ++k) sizes[k] = std::max<double>(least, mesh.reach[k]);
   for (int row = 0; row < 3; ++row) {
-    const double* r = &m[4 * row];
-    double sum = std::abs(r[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * std::max<double>(least, mesh.reach[k]);
-    if (!(sum < most[row])) return false;
+    if (!(magnitudeAlong(&m[4 * row], sizes) < most[row])) return false;
   }
   return true;
 }
@@ -31,9 +30,7 @@ double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
 }
 
 double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin) {
-  Vector farthest;
-  for (int k = 0; k < 3; ++k) farthest[k] = std::abs(mesh.origin[k]) + mesh.reach[k];
-  return 0x1p-47 * (placedMagnitude(farthest, pose) + largest(origin));
+  return 0x1p-47 * (placedMagnitude(mesh.span(), pose) + largest(origin));
 }
 
 Box tightBox(const Mesh& mesh, const Affine& m) {

@@ -24,16 +24,6 @@ struct Interval {
   double lo, hi;
 };
 
-// Of a placed mesh on one axis: `r` are that row's factors of local vertices, whose origin is at `origin`.
-Interval intervalOf(const Mesh& mesh, const double* r, double origin) {
-  double middle = origin, half = 0;
-  for (int k = 0; k < 3; ++k) {
-    middle += r[k] * mesh.box.middle(k);
-    half += std::abs(r[k]) * 0.5 * (mesh.box.hi[k] - mesh.box.lo[k]);
-  }
-  return {middle - half, middle + half};
-}
-
 }  // namespace
 
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
@@ -42,29 +32,20 @@ Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
   double magnitude = 0;
   for (int row = 0; row < 3; ++row) {
     const double* r = &m[4 * row];
-    double origin = r[3], sum = std::abs(r[3]);
+    double middle = r[3], half = 0;
+    for (int k = 0; k < 3; ++k) middle += r[k] * mesh.origin[k];
     for (int k = 0; k < 3; ++k) {
-      origin += r[k] * mesh.origin[k];
-      sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
+      middle += r[k] * mesh.box.middle(k);
+      half += std::abs(r[k]) * 0.5 * (mesh.box.hi[k] - mesh.box.lo[k]);
     }
-    magnitude = std::max(magnitude, sum);
-    axes[row] = intervalOf(mesh, r, origin);
+    magnitude = std::max(magnitude, magnitudeAlong(r, mesh.span()));
+    axes[row] = {middle - half, middle + half};
   }
   const double room = 0x1p-47 * magnitude;
   Box box;
   for (int row = 0; row < 3; ++row) {
     box.lo[row] = axes[row].lo - room;
     box.hi[row] = axes[row].hi + room;
-  }
-  return box;
-}
-
-Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& m) {
-  Box box;
-  for (int row = 0; row < 3; ++row) {
-    const auto [lo, hi] = intervalOf(mesh, &m[4 * row], m[4 * row + 3]);
-    box.lo[row] = lo;
-    box.hi[row] = hi;
   }
   return box;
 }
@@ -89,13 +70,9 @@ std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFro
 }
 
 double placedMagnitude(const Vector& farthest, const Transform& worldFromMesh) {
-  double greatest = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double* row = &worldFromMesh.m[4 * i];
-    double sum = std::abs(row[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(row[k]) * farthest[k];
-    greatest = std::max(greatest, sum);
-  }
+  const double* m = worldFromMesh.m.data();
+  const double greatest =
+      std::max({magnitudeAlong(m, farthest), magnitudeAlong(m + 4, farthest), magnitudeAlong(m + 8, farthest)});
   return std::min(greatest, std::numeric_limits<double>::max());
 }
 

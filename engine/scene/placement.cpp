@@ -71,11 +71,11 @@ gpu::Placement placementOf(const Mesh& mesh, const Transform& worldFromMesh) {
   }
   for (int row = 0; row < 3; ++row) {
     const double* r = &worldFromMesh.m[4 * row];
-    double position = r[3], sum = std::abs(r[3]), entries = 0;
+    const double sum = magnitudeAlong(r, mesh.span());
+    double position = r[3], entries = 0;
     for (int k = 0; k < 3; ++k) {
       matrix[3 * row + k] = r[k] * mesh.unit;
       position += r[k] * mesh.origin[k];
-      sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
       size += std::abs(r[k]) * mesh.reach[k];
       most = std::max(most, std::abs(matrix[3 * row + k]));
       entries += std::abs(r[k]) + std::abs(matrix[3 * row + k]);

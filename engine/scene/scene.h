@@ -47,6 +47,10 @@ struct Mesh {
 
   /// gpu::Vertex::number.
   uint32_t hostVertex(uint32_t vertex) const { return hostVertices.empty() ? vertex : hostVertices[vertex]; }
+  /// |origin| + reach: what positions are summed from on their way to a place, at most.
+  Vector span() const {
+    return {std::abs(origin[0]) + reach[0], std::abs(origin[1]) + reach[1], std::abs(origin[2]) + reach[2]};
+  }
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
   float normalised(uint32_t vertex, int axis) const {
@@ -106,16 +110,20 @@ struct Scene::Impl {
 /// The corners of a triangle of the placed mesh.
 std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle);
 
-/// The greatest sum of absolute values from which a coordinate of a placed mesh is summed, over its box and the axes.
-/// No placed coordinate is larger. `farthest`: of the mesh.
+/// The sum of absolute values from which a coordinate is summed, at most, where `row` (n t) takes vectors with
+/// components of at most `sizes`.
+inline double magnitudeAlong(const double* row, const Vector& sizes) {
+  double sum = std::abs(row[3]);
+  for (int k = 0; k < 3; ++k) sum += std::abs(row[k]) * sizes[k];
+  return sum;
+}
+
+/// The greatest of these for a placed mesh, over its axes. No placed coordinate is larger. `farthest`: of the mesh.
 double placedMagnitude(const Vector& farthest, const Transform& worldFromMesh);
 
 /// A box around the transformed mesh. It contains every vertex that `transformPoint` computes, and every one that a
 /// shader computes from the local floats.
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);
-
-/// The same for a matrix that takes local vertices. The caller adds the rounding error of that matrix.
-Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& parentFromLocal);
 
 /// Whether a query takes a step.
 inline bool isStep(const Query& query, const Scene::Impl& scene) {

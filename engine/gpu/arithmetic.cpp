@@ -178,19 +178,9 @@ double ulpOf(double x) {
   return std::ldexp(1.0, std::max(x == 0 ? -1022 : std::ilogb(x), -1022) - 52);
 }
 
-// An exact result as two doubles: high + low, |low| at most half an ulp of high.
-struct ExactResult {
-  double high, low = 0;
-};
-
-ExactResult exactSum(double x, double y) {
-  const double sum = x + y, part = sum - x;
-  return {sum, (x - (sum - part)) + (y - part)};
-}
-
 // Off by less than an ulp, whatever the rounding direction. The larger ulp counts: just below a power of two, `exact`
 // has half the ulp of a result that reaches that power.
-Verdict rounded(float result, ExactResult exact) {
+Verdict rounded(float result, exact::DoubleDouble exact) {
   const double off = std::abs((result - exact.high) - exact.low);
   const double ulps = off / std::max(ulpOf(static_cast<float>(exact.high)), ulpOf(result));
   return {ulps < 1, ulps};
@@ -244,13 +234,13 @@ Verdict boxed(const FloatCase& c) {
 // On what the bounds of mode contact rest.
 constexpr Check<FloatCase> kFloatChecks[] = {
     {"float addition", "less than 1 ulp off",
-     [](const FloatCase& c) { return rounded(c.found.sum, exactSum(c.given.x, c.given.y)); }},
+     [](const FloatCase& c) { return rounded(c.found.sum, exact::sum(c.given.x, c.given.y)); }},
     {"float multiplication", "less than 1 ulp off",
      [](const FloatCase& c) { return rounded(c.found.product, {double{c.given.x} * c.given.y}); }},
     {"float division", "at most 2.5 ulp off",
      [](const FloatCase& c) { return within(c.found.quotient, double{c.given.x} / c.given.y, 2.5); }},
     {"float x * y + z, declared precise", "the product is rounded before the sum",
-     [](const FloatCase& c) { return rounded(c.found.chain, exactSum(c.found.product, c.given.z)); }},
+     [](const FloatCase& c) { return rounded(c.found.chain, exact::sum(c.found.product, c.given.z)); }},
     {"float sums in two parts, declared precise", "within 2^-40 of the terms", sumsInParts},
     {"float differences in two parts, declared precise", "within 2^-23 of each part's and the result's",
      differencesInParts},
@@ -276,9 +266,9 @@ Verdict placed(const DoubleCase& c) {
 
 // What x + y, the larger plus the smaller, and x * y lost to rounding.
 Verdict rests(const DoubleCase& c) {
-  const double x = c.given.x, y = c.given.y, exact = exactSum(x, y).low;
+  const double x = c.given.x, y = c.given.y, lost = exact::sum(x, y).low;
   const double* found = c.found.rests;
-  return {found[0] == exact && found[1] == exact && found[2] == std::fma(x, y, -(x * y))};
+  return {found[0] == lost && found[1] == lost && found[2] == std::fma(x, y, -(x * y))};
 }
 
 Verdict chained(const DoubleCase& c) {

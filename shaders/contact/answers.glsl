@@ -65,6 +65,7 @@ uvec2 unscaled(float x, float scale) {
 }
 
 #ifndef RADAR_NO_DOUBLES
+#include "shared/bounded.glsl"
 #include "shared/divide.glsl"
 // 0 is written without sign: Vulkan does not define the sign of 0.
 uvec2 bitsOf(double x) { return x == 0.0LF ? uvec2(0) : unpackDouble2x32(x); }
@@ -145,9 +146,6 @@ RadarResult leaveAll(bool met) {
 }
 
 #ifndef RADAR_NO_DOUBLES
-const double kNever = 1.0e200LF;
-const double kRounded = 8.0LF * 1.1102230246251565e-16LF;
-
 // A summary of a sensor's refined pairs.
 struct PairSummary {
   uint count;            // number of refined pairs

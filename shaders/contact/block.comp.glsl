@@ -5,22 +5,16 @@
 #extension GL_GOOGLE_include_directive : require
 #include "refined_pair.glsl"
 #include "turned_corners.glsl"
+#include "slack.glsl"
 
 // ---- numbers with error bounds -----------------------------------------------------------------------------------------
 
-// 2^-53, and room for the rounding of the bounds themselves.
-const double kHalfUlp = 1.1102230246251565e-16LF, kMore = 1.0001LF;
-// More than a product may lose to underflow.
-const double kTiny = 1.0e-280LF;
+// Room for the rounding of the bounds themselves.
+const double kMore = 1.0001LF;
 
-struct Bounded {
-  double value, error;
-};
 struct BoundedVector {
   dvec3 value, error;
 };
-
-#include "slack.glsl"
 
 Bounded minus(Bounded p, Bounded q) {
   const double value = p.value - q.value;
@@ -264,7 +258,7 @@ void main() {
   bool mayBePressed;
   const int answer = blocks(sweeps[c.sensor], objects[c.object].pose, isLate, mayBePressed);
   if (answer == kNo) {
-    refinedPairs[i].low = 1.0e200LF;
+    refinedPairs[i].low = kNever;
     refinedPairs[i].first = 1e38;
   } else if (mayBePressed && (c.flags & kPairMeets) == 0) {
     // Rounding may have let the triangles part, or slide past each other, but they count from the start.

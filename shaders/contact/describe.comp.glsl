@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "answers.glsl"
 #include "root.glsl"
+#include "shared/turn.glsl"
 
 // Unevaluated sums of two doubles; the operations are those of engine/exact/determinant.cpp and event.cpp, in the same order.
 
@@ -29,13 +30,8 @@ FineVector fine(dvec3 v) {
 }
 FineVector difference(dvec3 p, dvec3 q) { return FineVector(sum(p.x, -q.x), sum(p.y, -q.y), sum(p.z, -q.z)); }
 
-// The next component becomes the first.
-void cycle(inout FineVector v) {
-  const DoubleDouble first = v.x;
-  v.x = v.y;
-  v.y = v.z;
-  v.z = first;
-}
+RADAR_CYCLE(DoubleDouble)
+void cycle(inout FineVector v) { cycle(v.x, v.y, v.z); }
 
 // w . (x cross y), component by component.
 Fine fineDeterminant(FineVector w, FineVector x, FineVector y) {

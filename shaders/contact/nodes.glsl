@@ -35,7 +35,6 @@ vec4 sensorTexel(uint sensor, int texel) { return uintBitsToFloat(sensorBits(sen
 
 // Rows x, y, z.
 mat3 rows(vec3 x, vec3 y, vec3 z) { return transpose(mat3(x, y, z)); }
-float sum3(vec3 v) { return v.x + v.y + v.z; }
 float max3(vec3 v) { return max(v.x, max(v.y, v.z)); }
 float min3(vec3 v) { return min(v.x, min(v.y, v.z)); }
 mat3 abs3(mat3 m) { return mat3(abs(m[0]), abs(m[1]), abs(m[2])); }
@@ -59,6 +58,3 @@ vec2 meetsBox(SensorBox box, vec4 middle, vec4 extent) {
   const vec3 reach = ((extent.xyz + box.halfExtent) * 1.00001 + 1e-6 * abs(gap)) * abs(box.inverseDirection);
   return vec2(max(max3(at - reach), 0.0), min3(at + reach));
 }
-
-// Half an ulp of 1. An operation may be off by twice that, since Vulkan fixes no rounding direction for floats.
-const float kUnit = 5.9604645e-8;

@@ -5,6 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "interop.h"
 #include "shared/scene.glsl"
+#include "shared/bounded.glsl"
 #include "placed_corners.glsl"
 #include "shared/workgroup.glsl"
 
@@ -18,9 +19,8 @@ layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { Object
 
 // Bounds of pairs in doubles as floats: lowers a sensor's upper bound of first contact to that of a pair.
 
-// Lower bounds are lowered and upper bounds raised by this, relative to their value: products may round them inwards.
-const double kRounded = 8.881784197001252e-16LF;
-// The same for a float.
+// Lower bounds are lowered and upper bounds raised by kRounded, relative to their value: products may round them inwards. By this
+// as floats.
 const double kRoundedFloat = 2.4e-7LF;
 
 // A lower bound, scaled, rounded down.

@@ -370,11 +370,7 @@ void descend() {
 
 // ---- triangles ---------------------------------------------------------------------------------------------------------
 
-void exchange(inout PlacedTriangle x, inout PlacedTriangle y) {
-  const PlacedTriangle first = x;
-  x = y;
-  y = first;
-}
+RADAR_EXCHANGE(PlacedTriangle)
 
 // Tests the pairs of triangles, up to two per leaf, and queues those that may meet. `all`: until no leaf is left.
 void tryLeaves(bool all) {

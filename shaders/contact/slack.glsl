@@ -1,4 +1,5 @@
-// How far surfaces at rest may sink into each other by rounding. Included after a struct Bounded{value, error} of doubles.
+// How far surfaces at rest may sink into each other by rounding.
+#include "shared/bounded.glsl"
 #include "magnitude.glsl"
 
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };

@@ -2,6 +2,8 @@
 // registers for more, nor for corners that an index selects.
 dvec3 a0, a1, a2, b0, b1, b2;
 
+#include "shared/turn.glsl"
+
 void setCorners(dvec3 a[3], dvec3 b[3]) {
   a0 = a[0];
   a1 = a[1];
@@ -11,16 +13,5 @@ void setCorners(dvec3 a[3], dvec3 b[3]) {
   b2 = b[2];
 }
 
-// The next corner becomes the first.
-void cycleA() {
-  const dvec3 first = a0;
-  a0 = a1;
-  a1 = a2;
-  a2 = first;
-}
-void cycleB() {
-  const dvec3 first = b0;
-  b0 = b1;
-  b1 = b2;
-  b2 = first;
-}
+void cycleA() { cycle(a0, a1, a2); }
+void cycleB() { cycle(b0, b1, b2); }

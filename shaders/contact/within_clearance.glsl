@@ -38,11 +38,7 @@ void offerCorner(inout vec3 gap, vec3 corner, vec3 face0, vec3 face1, vec3 face2
   if (nn > 0.0 && v >= 0.0 && w >= 0.0 && v + w <= nn) offer(gap, turn * ((v / nn) * x + (w / nn) * y - r));
 }
 
-void exchange(inout vec3 x, inout vec3 y) {
-  const vec3 first = x;
-  x = y;
-  y = first;
-}
+RADAR_EXCHANGE(vec3)
 
 vec3 nearestGap(vec3 a[3], vec3 b[3]) {
   vec3 a0 = a[0], a1 = a[1], a2 = a[2], b0 = b[0], b1 = b[1], b2 = b[2];

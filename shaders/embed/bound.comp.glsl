@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define RADAR_NO_DOUBLES
 #include "interop.h"
+#include "shared/float_order.glsl"
 #include "shared/scene.glsl"
 #include "shared/workgroup.glsl"
 #include "deformed.glsl"
@@ -18,9 +19,6 @@ layout(scalar, binding = kSlotExtents) restrict buffer Extents { Extent extents[
 layout(push_constant) uniform PushConstants { DeformedPush push; };
 
 shared uint least[3], leastNegated[3];
-
-// Numbers in the order of finite floats, and of their negatives. Comparing floats may flush small ones to 0.
-uvec3 inOrder(uvec3 bits) { return mix(bits | 0x80000000u, ~bits, greaterThanEqual(bits, uvec3(0x80000000u))); }
 
 void main() {
   const uint group = workgroupIndex();

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define RADAR_NO_DOUBLES
 #include "interop.h"
+#include "shared/float_order.glsl"
 #include "shared/workgroup.glsl"
 
 layout(local_size_x = kHostGroup) in;
@@ -14,11 +15,6 @@ layout(scalar, binding = kSlotUnbounded) readonly restrict buffer Unbounded { ui
 layout(scalar, binding = kSlotExtents) readonly restrict buffer Extents { Extent extents[]; };
 
 layout(push_constant) uniform PushConstants { NormalisePush push; };
-
-// The float with this number in the order of floats.
-float floatOf(uint inOrder) {
-  return uintBitsToFloat((inOrder & 0x80000000u) != 0 ? inOrder & 0x7fffffffu : ~inOrder);
-}
 
 void main() {
   const uint i = workgroupIndex() * kHostGroup + gl_LocalInvocationID.x;

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define RADAR_NO_DOUBLES
 #include "interop.h"
+#include "shared/float_order.glsl"
 
 layout(local_size_x = kCells) in;
 
@@ -25,16 +26,6 @@ shared uint listCount;
 shared uint minLOrdered;
 shared uint detectedAny;
 
-// Maps floats to unsigned integers of the same order, and back.
-uint ordered(float x) {
-  const uint bits = floatBitsToUint(x);
-  return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
-}
-
-float unordered(uint key) {
-  return uintBitsToFloat((key & 0x80000000u) != 0 ? key ^ 0x80000000u : ~key);
-}
-
 void main() {
   const uint v = gl_WorkGroupID.x;
   const uint cell = gl_LocalInvocationID.x;
@@ -43,7 +34,7 @@ void main() {
   const uvec2 end = min(first + view.cell, uvec2(view.width, view.height));
   if (cell == 0) {
     listCount = 0;
-    minLOrdered = ordered(kFar);
+    minLOrdered = inOrder(floatBitsToUint(kFar));
     detectedAny = 0;
   }
   barrier();
@@ -90,7 +81,7 @@ void main() {
   const bool proposes = bestPixel != kNobody;
   if (detected != 0) {
     atomicOr(detectedAny, 1);
-    atomicMin(minLOrdered, ordered(minL));
+    atomicMin(minLOrdered, inOrder(floatBitsToUint(minL)));
   }
   if (proposes) {
     const uint place = atomicAdd(listCount, 1);
@@ -108,7 +99,7 @@ void main() {
         Candidate(bestPixel, bestRange, bestMask, kNobody, kNobody);
   }
   if (cell == 0) {
-    const float least = unordered(minLOrdered);
+    const float least = floatOf(minLOrdered);
     const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
     answers[v] = Answer(least, flags, count);
     states[v] = SearchState(floatBitsToUint(view.start), 0, kNobody);

@@ -6,10 +6,6 @@
 #include "widen.glsl"
 #endif
 
-const float kUnit = 5.9604645e-8;  // 2^-24
-
-float sum3(vec3 v) { return v.x + v.y + v.z; }
-
 // The greatest coordinates, times `factor`.
 vec3 coordinatesOf(MeshRecord mesh, float factor) {
   precise vec3 sum = factor * abs(mesh.origin) + factor * max(abs(mesh.lo), abs(mesh.hi));

@@ -1,6 +1,7 @@
 // First contact of two triangles, one of them moving, with error bounds. In double precision the motion is along `direction`
 // and placed corners are exact (t = s * |direction|). In float the motion is along z, and corners are in the sensor's frame,
 // each within an error.
+#include "turn.glsl"
 
 struct BoundedFloat {
   float value;
@@ -114,17 +115,11 @@ float neverOf(float error) { return 3.0e38; }
 #undef ALONG
 
 #ifndef RADAR_NO_DOUBLES
+#include "bounded.glsl"
 #include "divide.glsl"
 #include "inner.glsl"
-// u = 2^-53. A triple product of differences of doubles errs by less than 10 u times the sum of its absolute products.
-const double kTripleError = 10.0LF * 1.1102230246251565e-16LF;
-// Below this, products may have lost bits to underflow.
-const double kTiny = 1.0e-280LF;
-
-struct Bounded {
-  double value;
-  double error;
-};
+// A triple product of differences of doubles errs by less than 10 u times the sum of its absolute products.
+const double kTripleError = 10.0LF * kHalfUlp;
 
 int signOf(Bounded x) { return x.value > x.error ? 1 : (x.value < -x.error ? -1 : 0); }
 
@@ -158,8 +153,6 @@ double depthOf(dvec3 x, dvec3 direction) { return inner(direction, x); }
 double reachOf(dvec3 x, dvec3 direction) { return inner(abs(direction), abs(x)); }
 double depthSlack(double reach, dvec3 direction) { return 3.552713678800501e-15LF * reach; }
 double squaredOf(dvec3 direction) { return inner(direction, direction); }
-// Far above every contact; its products with lengths and scales do not overflow.
-const double kNever = 1.0e200LF;
 double neverOf(dvec3 direction) { return kNever; }
 
 #define REAL double

@@ -41,14 +41,6 @@ void addFeature(inout IMPACT m, uint feature, bool isCertain, bool known, BOUNDE
 REAL least3(REAL x, REAL y, REAL z) { return min(x, min(y, z)); }
 REAL most3(REAL x, REAL y, REAL z) { return max(x, max(y, z)); }
 
-// The next corner becomes the first: a loop that indexed an array would keep it in memory.
-void cycle(inout REAL3 p, inout REAL3 q, inout REAL3 r) {
-  const REAL3 first = p;
-  p = q;
-  q = r;
-  r = first;
-}
-
 // a moves, b rests. Edges are (0,1), (1,2), (0,2), so that an edge shared by two triangles with sorted corners has the same
 // bits in both. Features are taken one after the other, and only those that may count: side by side they need more registers
 // than GPUs have, and more code than their caches hold.

@@ -3,6 +3,11 @@
 #ifndef RADAR_TWO_FLOATS_GLSL
 #define RADAR_TWO_FLOATS_GLSL
 
+// 2^-24, half an ulp of 1. An operation may be off by twice that, since Vulkan fixes no rounding direction for floats.
+const float kUnit = 5.9604645e-8;
+
+float sum3(vec3 v) { return v.x + v.y + v.z; }
+
 // Adds q to high + low. To nearest, only the sum of the low parts is rounded; in other directions, the rest may be off, too, by
 // up to 2^-45 of the sum: docs/method.md allows 2^-40.
 void addExactly(inout float high, inout float low, float q) {

@@ -97,10 +97,11 @@ def allowed(sources):
     yield Inequality("slack along a normal", result["error"].least, result["value"].error, [UNDERFLOW])
 
 
+BOUNDED = "shaders/shared/bounded.glsl"
 BOUNDS = "shaders/shared/triangle_pair_bounds.glsl"
 LOWER_HI = "shaders/contact/refined_pair.glsl"
-ANSWERS = ["shaders/contact/interop.h", "shaders/contact/answers.glsl"]
-BLOCK = ["shaders/contact/interop.h", "shaders/contact/block.comp.glsl"]
+ANSWERS = ["shaders/contact/interop.h", BOUNDED, "shaders/contact/answers.glsl"]
+BLOCK = ["shaders/contact/interop.h", BOUNDED, "shaders/contact/block.comp.glsl"]
 TRIPLE = [("kTripleError", "10.0LF"), ("kTiny", "1.0e-280LF")]
 QUOTIENT = ["9.094947017729282e-13LF", "8.881784197001252e-16LF * abs"]
 AS_FLOAT = [("kRoundedFloat", "2.4e-7LF")]
@@ -109,9 +110,9 @@ PRODUCT = [("productError", "3.0LF * kHalfUlp"), MORE]
 
 
 def claims():
-    bounds = [BOUNDS, "shaders/shared/divide.glsl"]
-    refine = [LOWER_HI, "shaders/contact/refine.comp.glsl"]
-    prove = [BOUNDS, "shaders/contact/prove.comp.glsl"]
+    bounds = [BOUNDED, BOUNDS, "shaders/shared/divide.glsl"]
+    refine = [BOUNDED, LOWER_HI, "shaders/contact/refine.comp.glsl"]
+    prove = [BOUNDED, BOUNDS, "shaders/contact/prove.comp.glsl"]
     vectors = bounded_vector("p"), bounded_vector("q")
     directions = *(vector(name, DIFFERENCE) for name in "xyz"), vector("d")
     # What a difference loses is relative to the result; and it loses nothing to underflow, since numbers are 0 or far
@@ -127,7 +128,7 @@ def claims():
         Claim("side beyond a slack", "sideBeyond", ["2.125LF * slack"], prove, side_beyond),
         Claim("lower bound as a float", "scaledDown", AS_FLOAT, [LOWER_HI], scaled_down),
         Claim("upper bound as a float", "lowerHi", AS_FLOAT, [LOWER_HI], lower_hi),
-        Claim("lower bound of a pair", "main", [("kRounded", "8.881784197001252e-16LF")], refine, rounded_down),
+        Claim("lower bound of a pair", "main", [("kRounded", "8.0LF")], refine, rounded_down),
         Claim("upper bound of a pair", "summarise", [("kRounded", "8.0LF")], ANSWERS, rounded_up),
         Claim("difference", "minus", [HALF_ULP, MORE], BLOCK, minus),
         Claim("difference of exact vectors", "difference", [HALF_ULP], BLOCK, exact),

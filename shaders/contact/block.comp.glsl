@@ -47,17 +47,17 @@ Bounded inner(BoundedVector p, BoundedVector q) {
   return Bounded(sum, error * kMore);
 }
 
-Bounded crossComponent(double p0, double errorP0, double p1, double errorP1, double q0, double errorQ0, double q1,
-                       double errorQ1) {
-  const double error = productError(p0, errorP0, q1, errorQ1) + productError(p1, errorP1, q0, errorQ0);
-  const double value = p0 * q1 - p1 * q0;
+// Component k of a product: that of the next two components of each.
+Bounded crossComponent(BoundedVector p, BoundedVector q, uint k) {
+  const uint i = (k + 1) % 3, j = (k + 2) % 3;
+  const double error = productError(p.value[i], p.error[i], q.value[j], q.error[j]) +
+                       productError(p.value[j], p.error[j], q.value[i], q.error[i]);
+  const double value = p.value[i] * q.value[j] - p.value[j] * q.value[i];
   return Bounded(value, error * kMore);
 }
 
 BoundedVector crossProduct(BoundedVector p, BoundedVector q) {
-  const Bounded x = crossComponent(p.value.y, p.error.y, p.value.z, p.error.z, q.value.y, q.error.y, q.value.z, q.error.z);
-  const Bounded y = crossComponent(p.value.z, p.error.z, p.value.x, p.error.x, q.value.z, q.error.z, q.value.x, q.error.x);
-  const Bounded z = crossComponent(p.value.x, p.error.x, p.value.y, p.error.y, q.value.x, q.error.x, q.value.y, q.error.y);
+  const Bounded x = crossComponent(p, q, 0), y = crossComponent(p, q, 1), z = crossComponent(p, q, 2);
   return BoundedVector(dvec3(x.value, y.value, z.value), dvec3(x.error, y.error, z.error));
 }
 
@@ -146,14 +146,13 @@ int separates(BoundedVector n, bool isAcross) {
   return min(isNotZero(n), max(forward, backward));
 }
 
-// Whether no normal keeps the triangles apart. Those that may are the two faces'; the direction's products with the six edges;
-// and the products of an edge of each.
-// `apart`: what is known already.
+// Whether no normal keeps the triangles apart. Those that may are the two faces', the direction's products with the six edges,
+// and the products of an edge of each. `apart`: what is known already.
 int areInseparable(int apart) {
   int exists = kOpen;
   [[dont_unroll]] for (uint k = 0; k < 17 && apart != kYes; ++k) {
-    // Of an edge of a: its products with all edges of b, and with the direction; then that of the direction with an edge of b,
-    // and after the first two edges a face's normal.
+    // For each edge of a, six steps: 0 to 2 its products with b's edges; 3 the direction's with it; 4 the direction's with an
+    // edge of b, the next each time; 5 a face's normal, a's first, then b's.
     const uint step = k % 6;
     const bool isPair = step < 3, isAcross = step == 3 || step == 4, faceOfA = k == 5;
     const BoundedVector edgeA = edgeOf(true), edgeB = edgeOf(false);
@@ -168,8 +167,8 @@ int areInseparable(int apart) {
   return min(exists, -apart);
 }
 
-// Whether the triangles lie in one plane, face each other and overlap. `facing`: kYes if the product of their normals is
-// negative.
+// Whether the triangles lie in one plane, up to the slack, face each other and overlap. `facing`: kYes if the product of their
+// normals is negative.
 int areFlush(int facing) {
   int flush = facing, thin = kNo;
   // Along both normals, then along what is orthogonal to a normal and one of its edges.

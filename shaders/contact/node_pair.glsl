@@ -32,8 +32,8 @@ MeshPair meshPairOf(uint sensor, uint object) {
   const vec4 nb0 = objectTexel(object, kTexelInverse), nb1 = objectTexel(object, kTexelInverse + 1),
              nb2 = objectTexel(object, kTexelInverse + 2);
   const vec4 sizesA = sensorTexel(sensor, kTexelError), sizesB = objectTexel(object, kTexelError);
-  const vec4 direction = sensorTexel(sensor, kTexelDirection);
-  const float scale = direction.w, unscale = sensorTexel(sensor, kTexelMask).w;
+  const vec3 direction = sensorTexel(sensor, kTexelDirection).xyz;
+  const float scale = scaleOf(sensor), unscale = unscaleOf(sensor);
   const vec3 reachA = sensorTexel(sensor, kTexelReach).xyz, reachB = objectTexel(object, kTexelReach).xyz;
 
   const vec3 high = vec3(b0.w, b1.w, b2.w) - vec3(a0.w, a1.w, a2.w), low = vec3(fb0.w, fb1.w, fb2.w) - vec3(fa0.w, fa1.w, fa2.w);
@@ -60,9 +60,9 @@ MeshPair meshPairOf(uint sensor, uint object) {
   p.fromB = inverseA * matrixB;
   p.offsetA = -(inverseB * apart);
   p.offsetB = inverseA * apart;
-  p.velocityA = inverseB * direction.xyz;
-  p.velocityB = inverseA * direction.xyz;
-  p.farthest = max(1.00001 * min(sensorTexel(sensor, kTexelCentre).w, most), 9.5367432e-7);
+  p.velocityA = inverseB * direction;
+  p.velocityB = inverseA * direction;
+  p.farthest = max(1.00001 * min(distanceOf(sensor), most), 9.5367432e-7);
   // The sum of all absolute terms along an axis.
   const vec3 spanB = reachB + sizeB * (abs3(matrixA) * reachA + abs(apart)),
              spanA = reachA + sizeA * (abs3(matrixB) * reachB + abs(apart));
@@ -90,21 +90,29 @@ struct Approach {
 };
 const float kMiss = 3.0e38;
 
-// Adds the slab along the normal of `own`. `fromOther` and `offset` take coordinates of `other`, the node of the other side,
-// to those of `own`; `other` moves against `velocity`.
-void addNormalSlab(inout float enter, inout float leave, Node own, Node other, mat3 fromOther, vec3 offset, vec3 velocity,
-                   vec3 slack, float least, float farthest) {
+// A node as the other mesh meets it: `fromOther` and `offset` take the other's coordinates to the node's, in which the other
+// moves against `velocity`.
+struct Side {
+  Node node;
+  mat3 fromOther;
+  vec3 offset, velocity, slack;
+  float least;
+};
+
+// Adds the slab along the normal of `side`.
+void addNormalSlab(inout float enter, inout float leave, Side side, Node other, float farthest) {
+  const Node own = side.node;
   // The normal in the other's coordinates, as a multiple of the other's normal and a rest.
-  const vec3 n = own.normal * fromOther;
+  const vec3 n = own.normal * side.fromOther;
   const float along = dot(n, other.normal);
   const vec3 rest = n - along * other.normal;
-  const float between = dot(own.normal, offset) - own.middle;
+  const float between = dot(own.normal, side.offset) - own.middle;
   const float middle = along * other.middle + dot(rest, other.centre);
   const float extent = abs(along) * other.slab + dot(abs(rest), other.halfExtent) + own.slab;
   const float added = abs(along * other.middle) + dot(abs(rest), abs(other.centre)) + extent;
-  const float way = dot(own.normal, velocity);
-  const float held = way < 0.0 ? min(way, -least) : max(way, least);
-  const float margin = dot(abs(own.normal), slack) + farthest * abs(held - way) + 64.0 * kUnit * added;
+  const float way = dot(own.normal, side.velocity);
+  const float held = way < 0.0 ? min(way, -side.least) : max(way, side.least);
+  const float margin = dot(abs(own.normal), side.slack) + farthest * abs(held - way) + 64.0 * kUnit * added;
   const float gap = between + middle, reach = extent + margin, inverse = 1.0 / held;
   enter = max(enter, gap * inverse - reach * abs(inverse));
   leave = min(leave, gap * inverse + reach * abs(inverse));
@@ -120,8 +128,8 @@ Approach approachOf(MeshPair p, Node a, Node b, float limit) {
   float enter = max(max3(middleA - reachA), max3(middleB - reachB));
   float leave = min(min3(middleA + reachA), min3(middleB + reachB));
   // In A's coordinates, A rests and B moves against the motion; in B's coordinates, B rests and A moves.
-  addNormalSlab(enter, leave, a, b, p.fromB, p.offsetB, p.velocityB, p.slackB, p.leastB, p.farthest);
-  addNormalSlab(enter, leave, b, a, p.fromA, p.offsetA, -p.velocityA, p.slackA, p.leastA, p.farthest);
+  addNormalSlab(enter, leave, Side(a, p.fromB, p.offsetB, p.velocityB, p.slackB, p.leastB), b, p.farthest);
+  addNormalSlab(enter, leave, Side(b, p.fromA, p.offsetA, -p.velocityA, p.slackA, p.leastA), a, p.farthest);
   const bool meets = enter <= leave && leave >= 0.0 && enter <= limit;
   return Approach(meets ? max(enter, 0.0) : kMiss, sum3(spanA), sum3(b.halfExtent));
 }

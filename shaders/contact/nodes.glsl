@@ -23,15 +23,27 @@ Node nodeAt(uint i) {
 
 bool isLeaf(uint link) { return (link & kLinkLeaf) != 0; }
 
-// Texels of a Placement.
+// Texels of a Placement, and what is in the last places of some.
 const int kTexelFine = 3, kTexelInverse = 6, kTexelReach = 9, kTexelOrigin = 10, kTexelError = 11;
 uvec4 objectBits(uint object, int texel) { return texelFetch(placementTexels, int(kPlacementTexels * object) + texel); }
 vec4 objectTexel(uint object, int texel) { return uintBitsToFloat(objectBits(object, texel)); }
+uint objectRoot(uint object) { return objectBits(object, kTexelReach).w; }
+uint objectMask(uint object) { return objectBits(object, kTexelError).z; }
 
 // Texels of a Sensor, its placement's first.
 const int kTexelAcross = 12, kTexelUpwards = 13, kTexelAlong = 14, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17, kTexelMask = 18;
 uvec4 sensorBits(uint sensor, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * sensor) + texel); }
 vec4 sensorTexel(uint sensor, int texel) { return uintBitsToFloat(sensorBits(sensor, texel)); }
+uint sensorRoot(uint sensor) { return sensorBits(sensor, kTexelReach).w; }
+float statedClearance(uint sensor) { return sensorTexel(sensor, kTexelAcross).w; }
+float slackShare(uint sensor) { return sensorTexel(sensor, kTexelUpwards).w; }
+float tolerance(uint sensor) { return sensorTexel(sensor, kTexelAlong).w; }
+float scaleOf(uint sensor) { return sensorTexel(sensor, kTexelDirection).w; }
+float distanceOf(uint sensor) { return sensorTexel(sensor, kTexelCentre).w; }
+float stopBefore(uint sensor) { return sensorTexel(sensor, kTexelHalfExtent).w; }
+uint sensorMask(uint sensor) { return sensorBits(sensor, kTexelMask).x; }
+uvec2 excludedOf(uint sensor) { return sensorBits(sensor, kTexelMask).yz; }  // the first, and where they end
+float unscaleOf(uint sensor) { return sensorTexel(sensor, kTexelMask).w; }
 
 // Rows x, y, z.
 mat3 rows(vec3 x, vec3 y, vec3 z) { return transpose(mat3(x, y, z)); }

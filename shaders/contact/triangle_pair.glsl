@@ -4,15 +4,20 @@
 
 #include "shared/two_floats.glsl"
 
-// Places the triangles of a pair of leaves: turned * (q - anchor), for the scene's plus offset.
-struct PairFrame {
-  mat3 turnedA, turnedB;
-  vec3 anchorA, anchorB;  // normalised coordinates, rounded to 8 bits
+// Places triangles of a leaf: at turned * (q - anchor) + offset.
+struct MeshFrame {
+  vec3 origin;  // q = (vertex - origin) * perUnit
+  float perUnit;
+  vec3 anchor;  // normalised coordinates, rounded to 8 bits
+  mat3 turned;
   vec3 offset;
-  vec3 originA, originB;  // q = (vertex - origin) * perUnit
-  float perUnitA, perUnitB;
-  vec3 columnsA, columnsB;  // column sums of the absolute scaled matrices
-  float errorA, errorB;     // error of a vertex on any axis, without the part due to its distance from the anchor
+  vec3 columns;  // column sums of the absolute scaled matrix
+  float error;   // of a vertex on any axis, without the part due to its distance from the anchor
+};
+
+// Of the sensor's leaf, whose offset is 0, and of the scene's.
+struct PairFrame {
+  MeshFrame a, b;
 };
 
 // One row of B's anchor minus A's, in the world. Products of the matrices' leading 16 bits and the anchors' 8 are exact.
@@ -43,28 +48,19 @@ PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
   const vec4 originA = sensorTexel(sensor, kTexelOrigin), originB = objectTexel(object, kTexelOrigin);
   const mat3 frame = rows(sensorTexel(sensor, kTexelAcross).xyz, sensorTexel(sensor, kTexelUpwards).xyz,
                           sensorTexel(sensor, kTexelAlong).xyz);
-  const float scale = sensorTexel(sensor, kTexelDirection).w;
-  const float slack = sensorTexel(sensor, kTexelUpwards).w * scale *
-                      (sensorTexel(sensor, kTexelError).x + objectTexel(object, kTexelError).x);
-  PairFrame f;
-  f.originA = originA.xyz;
-  f.perUnitA = originA.w;
-  f.originB = originB.xyz;
-  f.perUnitB = originB.w;
-  f.anchorA = anchorOf(normalised(vertexA, f.originA, f.perUnitA));
-  f.anchorB = anchorOf(normalised(vertexB, f.originB, f.perUnitB));
-  const vec3 apart = vec3(rowApart(a0, fa0, f.anchorA, b0, fb0, f.anchorB), rowApart(a1, fa1, f.anchorA, b1, fb1, f.anchorB),
-                          rowApart(a2, fa2, f.anchorA, b2, fb2, f.anchorB)) * scale;
+  const float scale = scaleOf(sensor);
+  const float slack = slackShare(sensor) * scale * (sensorTexel(sensor, kTexelError).x + objectTexel(object, kTexelError).x);
+  const vec3 anchorA = anchorOf(normalised(vertexA, originA.xyz, originA.w)),
+             anchorB = anchorOf(normalised(vertexB, originB.xyz, originB.w));
+  const vec3 apart = vec3(rowApart(a0, fa0, anchorA, b0, fb0, anchorB), rowApart(a1, fa1, anchorA, b1, fb1, anchorB),
+                          rowApart(a2, fa2, anchorA, b2, fb2, anchorB)) * scale;
   const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * scale;
   const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * scale;
-  f.turnedA = frame * matrixA;
-  f.turnedB = frame * matrixB;
-  f.offset = frame * apart;
-  f.columnsA = vec3(1.0) * abs3(matrixA);
-  f.columnsB = vec3(1.0) * abs3(matrixB);
-  f.errorA = 1.75 * scale * sensorTexel(sensor, kTexelError).x + 1e-30 + slack;
-  f.errorB = 1.75 * scale * objectTexel(object, kTexelError).x + 24.0 * kUnit * sum3(abs(apart)) + 1e-30;
-  return f;
+  const float errorA = 1.75 * scale * sensorTexel(sensor, kTexelError).x + 1e-30 + slack;
+  const float errorB = 1.75 * scale * objectTexel(object, kTexelError).x + 24.0 * kUnit * sum3(abs(apart)) + 1e-30;
+  const vec3 columnsA = vec3(1.0) * abs3(matrixA), columnsB = vec3(1.0) * abs3(matrixB);
+  return PairFrame(MeshFrame(originA.xyz, originA.w, anchorA, frame * matrixA, vec3(0.0), columnsA, errorA),
+                   MeshFrame(originB.xyz, originB.w, anchorB, frame * matrixB, frame * apart, columnsB, errorB));
 }
 
 struct PlacedTriangle {
@@ -72,22 +68,15 @@ struct PlacedTriangle {
   float error;
 };
 
-PlacedTriangle placedTriangle(uint slot, mat3 turned, vec3 origin, float perUnit, vec3 anchor, vec3 offset, vec3 columns,
-                              float error) {
+PlacedTriangle placedTriangle(MeshFrame f, uint slot) {
   const uvec4 corner = triangleAt(slot);
-  const vec3 q0 = normalised(vertexAt(corner.x), origin, perUnit) - anchor,
-             q1 = normalised(vertexAt(corner.y), origin, perUnit) - anchor,
-             q2 = normalised(vertexAt(corner.z), origin, perUnit) - anchor;
+  const vec3 q0 = normalised(vertexAt(corner.x), f.origin, f.perUnit) - f.anchor,
+             q1 = normalised(vertexAt(corner.y), f.origin, f.perUnit) - f.anchor,
+             q2 = normalised(vertexAt(corner.z), f.origin, f.perUnit) - f.anchor;
   PlacedTriangle t;
-  t.corners = vec3[3](turned * q0 + offset, turned * q1 + offset, turned * q2 + offset);
-  t.error = error + 24.0 * kUnit * dot(columns, max(abs(q0), max(abs(q1), abs(q2))));
+  t.corners = vec3[3](f.turned * q0 + f.offset, f.turned * q1 + f.offset, f.turned * q2 + f.offset);
+  t.error = f.error + 24.0 * kUnit * dot(f.columns, max(abs(q0), max(abs(q1), abs(q2))));
   return t;
-}
-PlacedTriangle placedA(PairFrame f, uint slot) {
-  return placedTriangle(slot, f.turnedA, f.originA, f.perUnitA, f.anchorA, vec3(0.0), f.columnsA, f.errorA);
-}
-PlacedTriangle placedB(PairFrame f, uint slot) {
-  return placedTriangle(slot, f.turnedB, f.originB, f.perUnitB, f.anchorB, f.offset, f.columnsB, f.errorB);
 }
 
 // Bound on the error of differences of coordinates of the two triangles.
@@ -105,18 +94,23 @@ bool edgeSeparates(vec2 from, vec2 to, float turn, PlacedTriangle other, float e
   return max(s0, max(s1, s2)) < -margin;
 }
 
-// Whether the other triangle certainly stays beyond the plane of x and y until `limit`, or is behind it. g0, g1, g2 lead from
-// the sensor's triangle to the scene's; one of their ends is a corner of the other triangle.
-bool planeKeepsApart(vec3 x, vec3 y, BoundedFloat area, vec3 g0, vec3 g1, vec3 g2, float error,
-                     float clearance, float limit) {
-  const vec3 n = cross(x, y);
-  const float turn = float(signOf(area));
+// Two edges of a triangle, and the area between them as seen along the motion.
+struct Face {
+  vec3 x, y;
+  BoundedFloat area;
+};
+
+// Whether the other triangle certainly stays beyond the face's plane until `limit`, or is behind it. `gaps` lead from the
+// sensor's triangle to the scene's; one of their ends is a corner of the other triangle.
+bool planeKeepsApart(Face face, vec3 gaps[3], float error, float clearance, float limit) {
+  const vec3 x = face.x, y = face.y, g0 = gaps[0], g1 = gaps[1], g2 = gaps[2], n = cross(x, y);
+  const float turn = float(signOf(face.area));
   const float h0 = turn * dot(g0, n), h1 = turn * dot(g1, n), h2 = turn * dot(g2, n);
   const float nx = norm1(x), ny = norm1(y), g = max(norm1(g0), max(norm1(g1), norm1(g2)));
   const float margin = 1.0001 * error * (nx * ny + g * (nx + ny) + 2.0 * error * (g + nx + ny) + 6.0 * error * error) +
                        12.0 * kUlp * g * nx * ny + kFlushed * (6.0 + 6.0 * g) +
                        clearance * (norm1(n) + 2.0001 * error * (nx + ny + 3.0 * error) + 16.0 * kUlp * nx * ny);
-  const float reached = 1.00001 * limit * (abs(area.value) + area.error) + margin;
+  const float reached = 1.00001 * limit * (abs(face.area.value) + face.area.error) + margin;
   return turn != 0.0 && (min(h0, min(h1, h2)) > reached || max(h0, max(h1, h2)) < -margin);
 }
 
@@ -125,18 +119,18 @@ bool mayMeet(PlacedTriangle a, PlacedTriangle b, float clearance, float limit) {
   const float error = differenceError(a, b), room = error + clearance;
   const vec3 a0 = a.corners[0], a1 = a.corners[1], a2 = a.corners[2], b0 = b.corners[0], b1 = b.corners[1], b2 = b.corners[2];
   const vec3 lowA = min(a0, min(a1, a2)), highA = max(a0, max(a1, a2)), lowB = min(b0, min(b1, b2)), highB = max(b0, max(b1, b2));
-  // Comparisons are exact, and the slack in `error` is larger than the rounding errors of the sums.
+  // Comparisons are exact, and `error` already exceeds what rounding costs the sums with `room`.
   const bool near = all(lessThanEqual(lowA.xy, highB.xy + room)) && all(lessThanEqual(lowB.xy, highA.xy + room)) &&
                     highB.z + room >= lowA.z && lowB.z - highA.z - room <= limit;
-  const vec3 xA = a1 - a0, yA = a2 - a0, xB = b1 - b0, yB = b2 - b0;
-  const BoundedFloat areaA = faceOf(xA, yA, error), areaB = faceOf(xB, yB, error);
-  const float turnA = float(signOf(areaA)), turnB = float(signOf(areaB));
+  const Face faceA = Face(a1 - a0, a2 - a0, faceOf(a1 - a0, a2 - a0, error)),
+             faceB = Face(b1 - b0, b2 - b0, faceOf(b1 - b0, b2 - b0, error));
+  const float turnA = float(signOf(faceA.area)), turnB = float(signOf(faceB.area));
   const bool apart = edgeSeparates(a0.xy, a1.xy, turnA, b, error, clearance) ||
                      edgeSeparates(a1.xy, a2.xy, turnA, b, error, clearance) ||
                      edgeSeparates(a2.xy, a0.xy, turnA, b, error, clearance) ||
                      edgeSeparates(b0.xy, b1.xy, turnB, a, error, clearance) ||
                      edgeSeparates(b1.xy, b2.xy, turnB, a, error, clearance) ||
                      edgeSeparates(b2.xy, b0.xy, turnB, a, error, clearance);
-  return near && !apart && !planeKeepsApart(xA, yA, areaA, b0 - a0, b1 - a0, b2 - a0, error, clearance, limit) &&
-         !planeKeepsApart(xB, yB, areaB, b0 - a0, b0 - a1, b0 - a2, error, clearance, limit);
+  return near && !apart && !planeKeepsApart(faceA, vec3[3](b0 - a0, b1 - a0, b2 - a0), error, clearance, limit) &&
+         !planeKeepsApart(faceB, vec3[3](b0 - a0, b0 - a1, b0 - a2), error, clearance, limit);
 }

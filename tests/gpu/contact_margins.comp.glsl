@@ -38,8 +38,8 @@ void main() {
   const Node nodeA = nodeAt(t.nodeA), nodeB = nodeAt(t.nodeB);
   found.gap = approachOf(meshes, nodeA, nodeB, t.limit).gap;
   const PairFrame f = pairFrameOf(t.sensor, t.object, vertexAt(triangleAt(t.slotA).x), vertexAt(triangleAt(t.slotB).x));
-  const PlacedTriangle a = placedA(f, t.slotA), b = placedB(f, t.slotB);
-  found.anchorA = f.anchorA;
+  const PlacedTriangle a = placedTriangle(f.a, t.slotA), b = placedTriangle(f.b, t.slotB);
+  found.anchorA = f.a.anchor;
   found.cornersA = a.corners;
   found.cornersB = b.corners;
   found.errorA = a.error;

@@ -281,9 +281,9 @@ def along_normal(pair, negative):
     other_node = node(other, normal=vector("o"), middle=given("mu"), slab=given("h", nonnegative=True))
     velocity = Vector(plain(f"v{k}", v.error) for k, v in enumerate(pair.velocity))
     offset, slack = pair.values[f"offset{other}"], pair.values[f"slack{other}"]
-    numbers = positive("least"), positive("f")
-    motion = pair.named_matrix(), offset, velocity, slack
-    evaluator.call("addNormalSlab", exactly(0), exactly(0), own_node, other_node, *motion, *numbers)
+    side = {"type": "Side", "node": own_node, "fromOther": pair.named_matrix(), "least": positive("least")}
+    side |= {"offset": offset, "velocity": velocity, "slack": slack}
+    evaluator.call("addNormalSlab", exactly(0), exactly(0), side, other_node, positive("f"))
     kept = {name: evaluator.values[name][0] for name in ("way", "gap", "reach")}
     rest, *ends = (evaluator.variables[name] for name in ("rest", "enter", "leave"))
 

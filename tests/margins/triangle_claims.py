@@ -118,8 +118,8 @@ def plane_keeps_apart(sources):
         evaluator = Evaluator(sources, DEVICE_FLOATS, contracts={"signOf": SIGN}, names=names)
         area = {"type": "BoundedFloat", "value": given("t", normal=True), "error": positive("b")}
         gaps = [difference(f"g{k}", counts=k == i) for k in range(3)]
-        arguments = positive("E"), positive("c"), positive("l")
-        evaluator.call("planeKeepsApart", difference("x"), difference("y"), area, *gaps, *arguments)
+        face = {"type": "Face", "x": difference("x"), "y": difference("y"), "area": area}
+        evaluator.call("planeKeepsApart", face, gaps, positive("E"), positive("c"), positive("l"))
         n, h, margin, reached = (evaluator.variables[name] for name in ("n", f"h{i}", "margin", "reached"))
         length = total(symbol(f"n{k}") + c.error.without("flushed") for k, c in enumerate(n))
         gap = total(symbol(f"g{i}{axis}") for axis in AXES)
@@ -163,11 +163,9 @@ def placed_triangle(sources, side, counting):
     names = {f"matrix{side}": matrix("m", IN_PARTS, given), "apart": vector("apart", ROUNDED, given)}
     frame = frame_of(sources, texel, SIGN, names=names)
     contracts = {"triangleAt": UNKNOWN, "vertexAt": UNKNOWN, "normalised": iter(map(corner, range(3)))}
-    zero = Vector(exactly(0) for _ in AXES)
-    offset = frame["offset"] if side == "B" else zero
-    arguments = zero, offset, frame[f"columns{side}"], frame[f"error{side}"]
+    frame = frame[side.lower()] | {"anchor": Vector(exactly(0) for _ in AXES)}
     placing = Evaluator(sources, DEVICE_FLOATS, contracts=contracts)
-    return placing.call("placedTriangle", UNKNOWN, frame[f"turned{side}"], UNKNOWN, UNKNOWN, *arguments)
+    return placing.call("placedTriangle", frame, UNKNOWN)
 
 
 def flushed_corner(balance):
@@ -280,7 +278,7 @@ def positions(sources):
         # The terms of the rows' sizes add up to Z, whatever the columns: the greatest coefficient counts.
         of_size = max(error.coefficient((f"m{side}{j}", f"r{side}{j}")) for j in range(3))
         need = symbol("Z") * of_size + symbol("S") * error.coefficient((f"P{side}",)) * ROOT_OF_3
-        margin = frame[f"error{side}"].least
+        margin = frame[side.lower()]["error"].least
         # Each of 7 calls of addExactly flushes up to 8 numbers, and up to 160 (by hand) flush where the mesh is placed.
         need += FLUSHED * (error.coefficient(("flushed",)) + 7 * 8 + 160) * ROOT_OF_3
         yield Inequality(f"position of {side}", margin - margin.coefficient(()), need)

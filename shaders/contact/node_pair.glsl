@@ -18,27 +18,20 @@ struct MeshPair {
 // second, so may cubes of errors.
 const float kMostRatio = 1.0e12, kMostError = 1.0e9;
 
-float mostOf(vec4 x, vec4 y, vec4 z) { return max3(vec3(sum3(abs(x.xyz)), sum3(abs(y.xyz)), sum3(abs(z.xyz)))); }
+float mostOf(MatrixRows m) { return max3(vec3(sum3(abs(m.x.xyz)), sum3(abs(m.y.xyz)), sum3(abs(m.z.xyz)))); }
 
 MeshPair meshPairOf(uint sensor, uint object) {
-  const vec4 a0 = sensorTexel(sensor, 0), a1 = sensorTexel(sensor, 1), a2 = sensorTexel(sensor, 2);
-  const vec4 fa0 = sensorTexel(sensor, kTexelFine), fa1 = sensorTexel(sensor, kTexelFine + 1),
-             fa2 = sensorTexel(sensor, kTexelFine + 2);
-  const vec4 na0 = sensorTexel(sensor, kTexelInverse), na1 = sensorTexel(sensor, kTexelInverse + 1),
-             na2 = sensorTexel(sensor, kTexelInverse + 2);
-  const vec4 b0 = objectTexel(object, 0), b1 = objectTexel(object, 1), b2 = objectTexel(object, 2);
-  const vec4 fb0 = objectTexel(object, kTexelFine), fb1 = objectTexel(object, kTexelFine + 1),
-             fb2 = objectTexel(object, kTexelFine + 2);
-  const vec4 nb0 = objectTexel(object, kTexelInverse), nb1 = objectTexel(object, kTexelInverse + 1),
-             nb2 = objectTexel(object, kTexelInverse + 2);
+  const MatrixRows a = sensorRows(sensor, kTexelCoarse), fineA = sensorRows(sensor, kTexelFine),
+                   normalsA = sensorRows(sensor, kTexelInverse);
+  const MatrixRows b = objectRows(object, kTexelCoarse), fineB = objectRows(object, kTexelFine),
+                   normalsB = objectRows(object, kTexelInverse);
   const vec4 sizesA = sensorTexel(sensor, kTexelError), sizesB = objectTexel(object, kTexelError);
   const vec3 direction = sensorTexel(sensor, kTexelDirection).xyz;
   const float scale = scaleOf(sensor), unscale = unscaleOf(sensor);
   const vec3 reachA = sensorTexel(sensor, kTexelReach).xyz, reachB = objectTexel(object, kTexelReach).xyz;
 
-  const vec3 high = vec3(b0.w, b1.w, b2.w) - vec3(a0.w, a1.w, a2.w), low = vec3(fb0.w, fb1.w, fb2.w) - vec3(fa0.w, fa1.w, fa2.w);
-  const vec3 apart = differenceInParts(vec3(b0.w, b1.w, b2.w), vec3(fb0.w, fb1.w, fb2.w), vec3(a0.w, a1.w, a2.w),
-                                       vec3(fa0.w, fa1.w, fa2.w)) * scale;
+  const vec3 high = lastOf(b) - lastOf(a), low = lastOf(fineB) - lastOf(fineA);
+  const vec3 apart = differenceInParts(lastOf(b), lastOf(fineB), lastOf(a), lastOf(fineA)) * scale;
   const float clearance = clearanceOf(sensor);
   const float error = scale * (sizesA.x + sizesB.x) + clearance;
   const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y) + clearance;
@@ -46,13 +39,12 @@ MeshPair meshPairOf(uint sensor, uint object) {
   MeshPair p;
   // Tested before multiplying. perUnit is 0 if floats cannot hold the object.
   p.inRange = objectTexel(object, kTexelOrigin).w > 0.0 && most < kMostRatio && error < kMostError &&
-              max(mostOf(a0, a1, a2), mostOf(b0, b1, b2)) < kMostRatio * unscale &&
-              max(mostOf(na0, na1, na2), mostOf(nb0, nb1, nb2)) < kMostRatio * scale;
+              max(mostOf(a), mostOf(b)) < kMostRatio * unscale &&
+              max(mostOf(normalsA), mostOf(normalsB)) < kMostRatio * scale;
   const float by = p.inRange ? scale : 0.0, perBy = p.inRange ? unscale : 0.0;
   const vec3 positionError = 4.0 * kUnit * by * (abs(high) + abs(low));
-  const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * by;
-  const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * by;
-  const mat3 inverseA = rows(na0.xyz, na1.xyz, na2.xyz) * perBy, inverseB = rows(nb0.xyz, nb1.xyz, nb2.xyz) * perBy;
+  const mat3 matrixA = matrixOf(a, fineA) * by, matrixB = matrixOf(b, fineB) * by;
+  const mat3 inverseA = matrixOf(normalsA) * perBy, inverseB = matrixOf(normalsB) * perBy;
   const mat3 sizeA = abs3(inverseA), sizeB = abs3(inverseB);
   const vec3 sumA = sizeA * vec3(1.0), sumB = sizeB * vec3(1.0);
 
@@ -66,9 +58,9 @@ MeshPair meshPairOf(uint sensor, uint object) {
   // The sum of all absolute terms along an axis.
   const vec3 spanB = reachB + sizeB * (abs3(matrixA) * reachA + abs(apart)),
              spanA = reachA + sizeA * (abs3(matrixB) * reachB + abs(apart));
-  p.slackA = vec3(nb0.w, nb1.w, nb2.w) + sumB * error + sizeB * positionError + 64.0 * kUnit * spanB +
+  p.slackA = lastOf(normalsB) + sumB * error + sizeB * positionError + 64.0 * kUnit * spanB +
              16.0 * kUnit * p.farthest * sumB + 1e-11;
-  p.slackB = vec3(na0.w, na1.w, na2.w) + sumA * error + sizeA * positionError + 64.0 * kUnit * spanA +
+  p.slackB = lastOf(normalsA) + sumA * error + sizeA * positionError + 64.0 * kUnit * spanA +
              16.0 * kUnit * p.farthest * sumA + 1e-11;
   // The slack is included, so that quotients by a velocity stay below 1e12 times `farthest`.
   const vec3 leastA = 9.5367432e-7 / p.farthest * max(reachB + abs3(p.fromA) * reachA + p.slackA, vec3(9.5367432e-7)),

@@ -24,14 +24,15 @@ Node nodeAt(uint i) {
 bool isLeaf(uint link) { return (link & kLinkLeaf) != 0; }
 
 // Texels of a Placement, and what is in the last places of some.
-const int kTexelFine = 3, kTexelInverse = 6, kTexelReach = 9, kTexelOrigin = 10, kTexelError = 11;
+const int kTexelCoarse = 0, kTexelFine = 3, kTexelInverse = 6, kTexelReach = 9, kTexelOrigin = 10, kTexelError = 11;
 uvec4 objectBits(uint object, int texel) { return texelFetch(placementTexels, int(kPlacementTexels * object) + texel); }
 vec4 objectTexel(uint object, int texel) { return uintBitsToFloat(objectBits(object, texel)); }
 uint objectRoot(uint object) { return objectBits(object, kTexelReach).w; }
 uint objectMask(uint object) { return objectBits(object, kTexelError).z; }
 
 // Texels of a Sensor, its placement's first.
-const int kTexelAcross = 12, kTexelUpwards = 13, kTexelAlong = 14, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17, kTexelMask = 18;
+const int kTexelAcross = 12, kTexelUpwards = 13, kTexelAlong = 14, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17,
+          kTexelMask = 18;
 uvec4 sensorBits(uint sensor, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * sensor) + texel); }
 vec4 sensorTexel(uint sensor, int texel) { return uintBitsToFloat(sensorBits(sensor, texel)); }
 uint sensorRoot(uint sensor) { return sensorBits(sensor, kTexelReach).w; }
@@ -47,6 +48,17 @@ float unscaleOf(uint sensor) { return sensorTexel(sensor, kTexelMask).w; }
 
 // Rows x, y, z.
 mat3 rows(vec3 x, vec3 y, vec3 z) { return transpose(mat3(x, y, z)); }
+
+// Three texels: a matrix, and a vector in their last places.
+struct MatrixRows {
+  vec4 x, y, z;
+};
+MatrixRows sensorRows(uint s, int t) { return MatrixRows(sensorTexel(s, t), sensorTexel(s, t + 1), sensorTexel(s, t + 2)); }
+MatrixRows objectRows(uint o, int t) { return MatrixRows(objectTexel(o, t), objectTexel(o, t + 1), objectTexel(o, t + 2)); }
+mat3 matrixOf(MatrixRows m) { return rows(m.x.xyz, m.y.xyz, m.z.xyz); }
+mat3 matrixOf(MatrixRows m, MatrixRows rest) { return rows(m.x.xyz + rest.x.xyz, m.y.xyz + rest.y.xyz, m.z.xyz + rest.z.xyz); }
+vec3 lastOf(MatrixRows m) { return vec3(m.x.w, m.y.w, m.z.w); }
+
 float max3(vec3 v) { return max(v.x, max(v.y, v.z)); }
 float min3(vec3 v) { return min(v.x, min(v.y, v.z)); }
 mat3 abs3(mat3 m) { return mat3(abs(m[0]), abs(m[1]), abs(m[2])); }

@@ -7,7 +7,7 @@ const uint kLeafIterations = 11, kSolveIterations = 27 + kClearanceIterations;
 uint leaves, leafHead = 0, leafTail = 0;
 uint pairs, pairHead = 0, pairTail = 0;
 
-// Of a lane: tested.
+// Of a lane: how many it has tested.
 uint trianglePairs = 0;
 
 void pushLeaves(bool has, uint linkA, uint linkB, float gap) {

@@ -39,12 +39,8 @@ vec3 anchorOf(vec3 q) { return floor(q * 128.0 + 0.5) * 0.0078125; }
 
 // `vertexA` and `vertexB` are vertices of the leaves.
 PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
-  const vec4 a0 = sensorTexel(sensor, 0), a1 = sensorTexel(sensor, 1), a2 = sensorTexel(sensor, 2);
-  const vec4 fa0 = sensorTexel(sensor, kTexelFine), fa1 = sensorTexel(sensor, kTexelFine + 1),
-             fa2 = sensorTexel(sensor, kTexelFine + 2);
-  const vec4 b0 = objectTexel(object, 0), b1 = objectTexel(object, 1), b2 = objectTexel(object, 2);
-  const vec4 fb0 = objectTexel(object, kTexelFine), fb1 = objectTexel(object, kTexelFine + 1),
-             fb2 = objectTexel(object, kTexelFine + 2);
+  const MatrixRows a = sensorRows(sensor, kTexelCoarse), fineA = sensorRows(sensor, kTexelFine);
+  const MatrixRows b = objectRows(object, kTexelCoarse), fineB = objectRows(object, kTexelFine);
   const vec4 originA = sensorTexel(sensor, kTexelOrigin), originB = objectTexel(object, kTexelOrigin);
   const mat3 frame = rows(sensorTexel(sensor, kTexelAcross).xyz, sensorTexel(sensor, kTexelUpwards).xyz,
                           sensorTexel(sensor, kTexelAlong).xyz);
@@ -52,10 +48,10 @@ PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
   const float slack = slackShare(sensor) * scale * (sensorTexel(sensor, kTexelError).x + objectTexel(object, kTexelError).x);
   const vec3 anchorA = anchorOf(normalised(vertexA, originA.xyz, originA.w)),
              anchorB = anchorOf(normalised(vertexB, originB.xyz, originB.w));
-  const vec3 apart = vec3(rowApart(a0, fa0, anchorA, b0, fb0, anchorB), rowApart(a1, fa1, anchorA, b1, fb1, anchorB),
-                          rowApart(a2, fa2, anchorA, b2, fb2, anchorB)) * scale;
-  const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * scale;
-  const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * scale;
+  const vec3 apart = vec3(rowApart(a.x, fineA.x, anchorA, b.x, fineB.x, anchorB),
+                          rowApart(a.y, fineA.y, anchorA, b.y, fineB.y, anchorB),
+                          rowApart(a.z, fineA.z, anchorA, b.z, fineB.z, anchorB)) * scale;
+  const mat3 matrixA = matrixOf(a, fineA) * scale, matrixB = matrixOf(b, fineB) * scale;
   const float errorA = 1.75 * scale * sensorTexel(sensor, kTexelError).x + 1e-30 + slack;
   const float errorB = 1.75 * scale * objectTexel(object, kTexelError).x + 24.0 * kUnit * sum3(abs(apart)) + 1e-30;
   const vec3 columnsA = vec3(1.0) * abs3(matrixA), columnsB = vec3(1.0) * abs3(matrixB);

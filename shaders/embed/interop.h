@@ -22,7 +22,7 @@ struct BoundsViolation {
 };
 
 // How a transform lies in memory: bytes from row to row and from column to column.
-struct TransformLayout {
+struct MatrixLayout {
   uint row;
   uint column;
 };
@@ -40,7 +40,7 @@ struct Moved {
   uint mesh;
   uint mask;
   uint firstByte;  // of its transform; kNobody: it stands where the scene has it
-  TransformLayout format;
+  MatrixLayout format;
   uint leaf;         // of the tree over objects, to be fitted to the object; kNobody: it has bounds
   Point anchor;      // middle of its bounds, world
   Point halfExtent;  // of its bounds about the anchor; without bounds, the most of its coordinates

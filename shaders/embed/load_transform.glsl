@@ -4,7 +4,7 @@ uvec3 loadWords(uint byte) { return uvec3(loadWord(byte), loadWord(byte + 4), lo
 
 bool isFinite(uint bits) { return (bits & 0x7f800000u) != 0x7f800000u; }
 
-Transform transformAt(uint firstByte, TransformLayout format) {
+Transform transformAt(uint firstByte, MatrixLayout format) {
   Transform t;
   t.isFinite = true;
   t.low = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));

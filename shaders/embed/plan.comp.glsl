@@ -34,7 +34,7 @@ struct HostQuery {
 };
 
 HostQuery queryAt(uint byte) {
-  return HostQuery(transformAt(byte, TransformLayout(16, 4)), loadWords(byte + kQueryDirection),
+  return HostQuery(transformAt(byte, MatrixLayout(16, 4)), loadWords(byte + kQueryDirection),
                    loadWord(byte + kQueryDistance), loadWord(byte + kQueryMesh), loadWord(byte + kQueryMask),
                    loadWord(byte + kQueryExclude), loadWord(byte + kQueryFlags));
 }

@@ -24,13 +24,10 @@ class RADAR_API CpuSweeper {
   /// Updates the tree over the scene's objects. run() does this too; a separate call only moves the cost.
   void sync();
 
-  /// Answers any number of queries exactly. Status is hit, clear or overlap (for a query with `anyHit`: hit or clear);
-  /// `tier` is Tier::reference. t is t* to a few roundings, which also separate `lo` and `hi`, its bounds. The pair is
-  /// the least (object, triB, triA) of those that attain t*; `point` and `normal` belong to it. There is no normal if
-  /// the two triangles already meet at the start, other than by just touching, or lie in one plane that contains the
-  /// motion. There is no point if they meet at the start and lie in one plane. An answer's bits do not depend on its
-  /// batch or on the number of threads. Throws Error, naming the query, if one breaks its contract, before any is
-  /// answered. A batch of one starts no thread. `stop`: as of Sweeper::run.
+  /// Answers any number of queries exactly, with Tier::reference. Without a clearance, t is t* to a few roundings,
+  /// which also separate `lo` and `hi`, its bounds, and the pair is the least (object, triB, triA) of those that attain
+  /// t*. An answer's bits do not depend on its batch or on the number of threads. Throws Error, naming the query, if
+  /// one breaks its contract, before any is answered. A batch of one starts no thread. `stop`: as of Sweeper::run.
   Answers run(std::span<const Query> queries, const std::stop_token& stop = {});
 
  private:

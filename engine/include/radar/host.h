@@ -91,7 +91,7 @@ struct HostGeometry {
 struct HostQuery {
   float worldFromMesh[12]{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< rows (m0 m1 m2 t)
   float direction[3]{};
-  float distance = 0;
+  float distance = 0;  ///< a host that rounds its D to a float asks about the rounded one
   MeshId mesh = kNone;
   uint32_t mask = ~0u;
   ObjectId exclude = kNone;  ///< an object to ignore, such as the sensor's own; kNone, or no object: none

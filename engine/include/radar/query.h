@@ -31,7 +31,7 @@ struct Query {
   std::array<double, 3> direction{};  ///< finite, not zero; no longer than 2^1023 beside a component below 2^-1020
   double distance = 0;                ///< D >= 0, finite, world units
   bool anyHit = false;                ///< asks only whether there is contact within D: see Result. Cheaper if there is
-  std::vector<ObjectId> exclude{};    ///< objects to ignore, such as the sensor's own; at most a handful
+  std::vector<ObjectId> exclude{};    ///< objects to ignore, such as the sensor's own; even thousands cost little
   uint32_t mask = ~0u;                ///< an object takes part if its mask shares a bit
 
   /// Mode contact, instead of `direction` and `distance`, which stay 0: how far the sensor moves during a step, world
@@ -49,11 +49,11 @@ struct Query {
   /// Mode contact: objects whose surfaces cross the sensor's at the start, by more than the slack, take no part and are
   /// listed (Listed::overlapping). Whether a motion deepens an interpenetration cannot be told from surfaces.
   bool skipOverlapping = false;
-  /// With the two above, world units: by how much rounding may have let surfaces that touch sink into each other. Faces
-  /// pressed together block even so, at t = 0; crossings no deeper are no overlap. It is for rounding: far below the
-  /// size of triangles, and at most a tenth of the longest side of the sensor's box or of the clearance. Without a
-  /// value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms' absolute values summed; within
-  /// the bounds of a mesh that has some), which covers poses rounded once.
+  /// With the two above, world units: how deep rounding may have sunk surfaces that touch into each other. Faces
+  /// pressed together so deep block nevertheless, at t = 0; crossings no deeper are no overlap. It is for rounding: far
+  /// below the size of triangles, and at most a tenth of the longest side of the sensor's box or of the clearance.
+  /// Without a value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms' absolute values
+  /// summed; within the bounds of a mesh that has some), which covers poses rounded once.
   std::optional<double> slack{};
   /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t
   /// is lo, and hi - lo at most `tolerance`, if rounding allows: an object that passes at the clearance to within
@@ -69,7 +69,8 @@ struct Query {
   /// with all in reach. 1: no list.
   uint32_t hits = 1;
 
-  /// Mode sampled: pixels along the window's longer side, up to kMaxResolution. 0: chosen from the meshes.
+  /// Mode sampled: pixels along the window's longer side, up to kMaxResolution. 0: chosen from the meshes. Not one of
+  /// SweeperOptions, since one Sweeper draws pictures of many sizes, also within a batch.
   uint32_t resolution = 0;
 };
 

@@ -3,6 +3,17 @@
 // The engine submits nothing and waits for nothing here, but for known queries when a device with a queue makes its
 // first Recorder (checkAnswers): HostDevice::queue may be null. radar/result.glsl declares the answers' layout
 // for shaders.
+//
+// Ranges: queries with numbers that floats cannot hold become Status::invalid with Flag::range:
+// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
+// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis on
+//   which a mesh is flat but its matrix is not. Of a sensor whose mesh a host deforms without bounds, the rest pose's
+//   size counts, too;
+// - an object in reach that is more than 10^12 sensor sizes away. Where a host moves objects, or deforms their meshes,
+//   without bounds, any object counts, and from 10^11 sensor sizes on;
+// - a distance D that is not 0 but below 2^-100 of the sensor's size or 2^-138 of the scene's; no upper limit;
+// - a direction whose components differ by a factor of more than about 2^1000;
+// - a clearance above 2^29 times the sensor's size or below 2^-40 of the scene's.
 #pragma once
 
 #include <array>
@@ -72,39 +83,14 @@ class RADAR_API Recorder {
 
   /// Records the search into `commands`, a primary or secondary command buffer of HostDevice::queueFamily in the
   /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` now and not later; the host's
-  /// buffers that `geometry` names are read when the commands execute. The answer to query i starts at byte i *
-  /// sizeof(Result) of results() and has the bits of Sweeper::run. If pairs are too close for the device, the answer
-  /// has Flag::unresolved, and `t` is `lo`, before which there is no contact. If some contact is certain, the status is
-  /// hit: t* lies in [lo, hi], and object and triangles are the least of those that certainly touch by hi, though
-  /// read() may name others. Else it is undecided, `hi` is infinite and `fraction` is absent. Point and normal are
-  /// absent (NaN), as is the point of an overlap: read() finds them.
-  /// Queries with numbers that floats cannot hold become Status::invalid with Flag::range:
-  /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
-  /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis
-  ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away, or,
-  ///   beside objects that a host moves, or whose meshes it deforms, without bounds, any object more than 10^11 sensor
-  ///   sizes away; of a sensor whose mesh a host deforms without bounds, its rest pose counts, too;
-  /// - a distance D that is not 0 but below 2^-100 of the sensor's size or 2^-138 of the scene's; no upper limit;
-  /// - a direction whose components differ by a factor of more than about 2^1000;
-  /// - a clearance above 2^29 times the sensor's size or below 2^-40 of the scene's.
-  ///
-  /// Lists of hits (Query::hits) follow the answers in results(): those of query i are answers hitOffsets()[i] to
-  /// hitOffsets()[i + 1], nearest first, then clear ones. Objects whose contacts are less than a rounding apart are
-  /// ordered by t as given, then by number, and a step's answer is the first of them. An entry may be invalid or have
-  /// Flag::unresolved; it stands where its contact may be.
-  ///
-  /// With a clearance, hits have Flag::unresolved until read() decides them, except decisions (`anyHit`). If something
-  /// is within the clearance at the start, the answer is overlap without object, triangles, point and normal. A bracket
-  /// that rounding keeps wider than the tolerance may begin before that of a Sweeper, which then searches on the CPU.
-  ///
-  /// If anything in the host's buffers leaves its bounds, is not finite or too large for floats, every answer becomes
-  /// Status::invalid with Flag::bounds.
+  /// buffers that `geometry` names are read when the commands execute. If anything in these leaves its bounds, is not
+  /// finite or too large for floats, every answer becomes Status::invalid with Flag::bounds.
   ///
   /// - Before: the previous recording of this object has executed and been waited for. Writes to the buffers of
   ///   `geometry` are visible to VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them
   ///   wait for that stage. Without `geometry` nothing needs to be made visible.
   /// - Afterwards: submit the commands once or never; if never, call reset() before the next record(), which else
-  ///   throws. Readers of the answers wait for VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+  ///   throws. Readers of results() wait for VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
   ///   VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT.
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
@@ -138,9 +124,22 @@ class RADAR_API Recorder {
   void reset();
 
   /// The answers on the device: one buffer for storage and transfer, owned by the engine; the same as long as this
-  /// object lives.
+  /// object lives. It begins with a Result per query, in their order, with the bits of Sweeper::run unless it is open
+  /// until read() decides it.
+  ///
+  /// An answer with Flag::unresolved is open: pairs are too close for the device. `t` is `lo`, before which there is no
+  /// contact. If some contact is certain, the status is hit: t* lies in [lo, hi], and object and triangles are the
+  /// least of those that certainly touch by hi, though read() may name others. Else it is undecided, `hi` is infinite
+  /// and `fraction` is absent. Point and normal are absent (NaN), as is the point of any overlap.
+  ///
+  /// With a clearance, all hits are open, except decisions (`anyHit`). If something is within the clearance at the
+  /// start, the answer is overlap without object, triangles, point and normal. A bracket that rounding keeps wider than
+  /// the tolerance may begin before that of a Sweeper, which then searches on the CPU.
   VkBuffer results() const;
-  /// Where the last recording's lists are in results(), in answers: one number per query, and the end of the last list.
+  /// Where the last recording's lists of hits (Query::hits) are in results(), in answers: one number per query, and the
+  /// end of the last list. Each list has the nearest first, then clear answers. Objects whose contacts are less than a
+  /// rounding apart are ordered by t as given, then by number, and a step's answer is the first of them. Entries that
+  /// are invalid come first, and those that are open stand where their `lo` belongs.
   std::span<const uint32_t> hitOffsets() const;
 
   /// The answers on the CPU, one per recorded query (of a host's queries, as many as count), with open ones decided,
@@ -153,8 +152,8 @@ class RADAR_API Recorder {
   AnswerCounts answerCounts() const;
   /// What the last recording needed, to be called when read() may be: a list's length may differ by some percent when
   /// the same is recorded again. Where the need is unknown because a limit was exceeded: four times as many candidates,
-  /// twice as many rounds. If a query exceeded a limit and this is no more than there was, only a Sweeper answers it:
-  /// it alone has more than 16,384 pairs, or takes more than 64 rounds.
+  /// twice as many rounds. A query that exceeded a limit of which this asks no more is for a Sweeper only: by itself it
+  /// has more than 16,384 unresolved pairs, or takes more than 64 rounds.
   Capacity needed() const;
   /// If Flag::bounds is set, describes something that has left its bounds; else empty. Call it when read() may be
   /// called.

@@ -80,13 +80,18 @@ foreach(shader ${SHADERS})
     endif()
   endif()
   list(JOIN bindings ", " bindings)
+  set(use contact)
+  if(name MATCHES "^(sampled|arithmetic)/")
+    set(use ${CMAKE_MATCH_1})
+  endif()
   string(APPEND definitions "static const Binding ${constant}Bindings[] = {${bindings}};\n"
-    "const Shader ${constant}{\"${name}\", ${stage}, k_${symbol}, ${variant}, ${constant}Bindings, ${push_bytes}};\n")
+    "const Shader ${constant}{\"${name}\", Use::${use}, ${stage}, k_${symbol}, ${variant}, ${constant}Bindings, ${push_bytes}};\n")
   string(APPEND all "&${constant}, ")
 endforeach()
 file(WRITE ${SOURCE} "#include \"${HEADER}\"\n\n${includes}
 namespace ${NAMESPACE} {\n
-using radar::gpu::Binding;\n
+using radar::gpu::Binding;
+using radar::gpu::Use;\n
 ${definitions}
 static const Shader* const kEvery[] = {${all}};
 const std::span<const Shader* const> kAll = kEvery;\n

@@ -1,7 +1,6 @@
 #include "contact/compile_kernels.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "contact/pass.h"
 #include "math/float_environment.h"
@@ -10,10 +9,6 @@
 namespace radar {
 
 namespace {
-
-bool isIn(const char* folder, const gpu::Shader& shader) {
-  return std::string_view(shader.name).starts_with(folder);
-}
 
 bool runsOn(const Device::Impl& device, const gpu::Shader& shader) {
   return device.doubles || !shader.spirvWithoutDoubles.empty() || !gpu::hasDoubles(shader.spirv);
@@ -34,10 +29,10 @@ std::vector<gpu::Program> programsOf(const Device::Impl& device, Mode mode) {
   // The others are never specialized.
   for (const gpu::Shader* shader : shaders::kAll) {
     const bool isListed = std::ranges::any_of(programs, [&](const gpu::Program& own) { return own.shader == shader; });
-    const bool isUsed = isIn("sampled/", *shader)
-                            ? mode == Mode::sampled &&
-                                  (shader->stage == VK_SHADER_STAGE_COMPUTE_BIT || shader == &gpu::depthShader(device))
-                            : !isIn("arithmetic/", *shader);
+    const bool isOfMode =
+        shader->use == gpu::Use::contact || (shader->use == gpu::Use::sampled && mode == Mode::sampled);
+    const bool isUsed =
+        isOfMode && (shader->stage == VK_SHADER_STAGE_COMPUTE_BIT || shader == &gpu::depthShader(device));
     if (!isListed && isUsed && runsOn(device, *shader)) programs.push_back(*shader);
   }
   return programs;
@@ -49,7 +44,7 @@ std::vector<KernelReport> compileKernels(uint32_t index) {
   const bool isSampled = device->reasonsAgainstSampled.empty();
   std::vector<gpu::Program> programs = programsOf(*device, isSampled ? Mode::sampled : Mode::contact);
   for (const gpu::Shader* shader : shaders::kAll) {
-    if (isIn("arithmetic/", *shader) && runsOn(*device, *shader)) programs.push_back(*shader);
+    if (shader->use == gpu::Use::arithmetic && runsOn(*device, *shader)) programs.push_back(*shader);
   }
   std::vector<KernelReport> reports;
   for (const gpu::Program& program : programs) {

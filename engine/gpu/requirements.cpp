@@ -83,6 +83,7 @@ std::vector<DeviceLimit> limitsOf(const VkPhysicalDeviceLimits& limits, const Su
           contact("maxComputeWorkGroupCount[0]", 65535, limits.maxComputeWorkGroupCount[0]),
           contact("maxComputeWorkGroupCount[1]", 65535, limits.maxComputeWorkGroupCount[1]),
           contact("maxPushConstantsSize", kMostPushBytes, limits.maxPushConstantsSize),
+          // The most of any shader: requirements_test counts them.
           contact("maxPerStageDescriptorStorageBuffers", 8, limits.maxPerStageDescriptorStorageBuffers),
           contact("maxPerStageDescriptorSampledImages", 6, limits.maxPerStageDescriptorSampledImages),
           contact("maxTexelBufferElements", 65536, limits.maxTexelBufferElements),

@@ -17,8 +17,12 @@ struct Binding {
   const char* name;  ///< of the variable, or of its block
 };
 
+/// For which queries a shader runs, of mode contact or sampled only, or to check a device's arithmetic.
+enum class Use { contact, sampled, arithmetic };
+
 struct Shader {
   const char* name;  ///< its path in `shaders`, without suffixes
+  Use use;
   VkShaderStageFlagBits stage;
   std::span<const uint32_t> spirv;
   /// For devices without doubles; empty if it needs no such variant. It binds no more, and has the same push constants.

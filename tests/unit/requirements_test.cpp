@@ -41,7 +41,7 @@ gpu::DeviceFacts goodDevice() {
 uint64_t mostOf(std::initializer_list<VkDescriptorType> types, Mode mode) {
   size_t most = 0, count = 0;
   for (const gpu::Shader* shader : shaders::kAll) {
-    const bool isOfSampled = std::string(shader->name).starts_with("sampled/");
+    const bool isOfSampled = shader->use == gpu::Use::sampled;
     if (shader->stage != VK_SHADER_STAGE_COMPUTE_BIT || isOfSampled != (mode == Mode::sampled)) continue;
     ++count;
     size_t bound = 0;

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "gpu/barrier.h"
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "gpu/requirements.h"
 #include "spirv/radar_shaders.h"
 

@@ -4,7 +4,6 @@
 
 #include <span>
 
-#include "gpu/array.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
 #include "radar/answers.h"

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include "radar/device.h"
-
 #if defined(_WIN32)
 #define WIN32_LEAN_AND_MEAN
 #include <windows.h>
@@ -44,7 +42,9 @@ PFN_vkVoidFunction required(PFN_vkVoidFunction function, const char* name) {
 
 PFN_vkGetInstanceProcAddr systemLoader() {
   static void* const kFound = findLoader();
-  if (kFound == nullptr) throw Error(std::string("no Vulkan loader: ") + kLoader + " is not installed");
+  if (kFound == nullptr) {
+    throw Error(std::string("no Vulkan loader: ") + kLoader + " is not installed");
+  }
   return reinterpret_cast<PFN_vkGetInstanceProcAddr>(kFound);
 }
 
@@ -73,6 +73,51 @@ void Api::load(VkDevice device) {
 #define RADAR_LOAD(name) name = reinterpret_cast<PFN_vk##name>(GetDeviceProcAddr(device, "vk" #name));
   RADAR_STATISTICS_FUNCTIONS(RADAR_LOAD)
 #undef RADAR_LOAD
+}
+
+const char* resultName(VkResult result) {
+  switch (result) {
+#define RADAR_CASE(name) \
+  case name:             \
+    return #name;
+    RADAR_CASE(VK_SUCCESS)
+    RADAR_CASE(VK_NOT_READY)
+    RADAR_CASE(VK_TIMEOUT)
+    RADAR_CASE(VK_INCOMPLETE)
+    RADAR_CASE(VK_ERROR_OUT_OF_HOST_MEMORY)
+    RADAR_CASE(VK_ERROR_OUT_OF_DEVICE_MEMORY)
+    RADAR_CASE(VK_ERROR_INITIALIZATION_FAILED)
+    RADAR_CASE(VK_ERROR_DEVICE_LOST)
+    RADAR_CASE(VK_ERROR_MEMORY_MAP_FAILED)
+    RADAR_CASE(VK_ERROR_LAYER_NOT_PRESENT)
+    RADAR_CASE(VK_ERROR_EXTENSION_NOT_PRESENT)
+    RADAR_CASE(VK_ERROR_FEATURE_NOT_PRESENT)
+    RADAR_CASE(VK_ERROR_INCOMPATIBLE_DRIVER)
+    RADAR_CASE(VK_ERROR_TOO_MANY_OBJECTS)
+    RADAR_CASE(VK_ERROR_FORMAT_NOT_SUPPORTED)
+    RADAR_CASE(VK_ERROR_FRAGMENTED_POOL)
+    RADAR_CASE(VK_ERROR_OUT_OF_POOL_MEMORY)
+#undef RADAR_CASE
+    default:
+      return "unknown VkResult";
+  }
+}
+
+void check(VkResult result, const char* call, const char* about, uint64_t size, const char* unit) {
+  if (result >= VK_SUCCESS) return;
+  std::string text = call;
+  if (about) text += std::string(" (") + about;
+  if (size > 0) text += (about ? ", " : " (") + std::to_string(size) + " " + unit;
+  if (about || size > 0) text += ")";
+  throw Error(text + ": " + resultName(result) + " (" + std::to_string(result) + ")", result);
+}
+
+bool isOutOfMemory(const Error& error) {
+  return error.vulkan == VK_ERROR_OUT_OF_HOST_MEMORY || error.vulkan == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+}
+
+bool isLost(const Error& error) {
+  return error.vulkan == VK_ERROR_DEVICE_LOST;
 }
 
 }  // namespace radar::gpu

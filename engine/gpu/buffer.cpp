@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 
 namespace radar::gpu {
 
@@ -19,12 +19,7 @@ BufferView viewOf(const Device::Impl& device, VkBuffer buffer, VkDeviceSize byte
                                     .buffer = buffer,
                                     .format = VK_FORMAT_R32G32B32A32_UINT,
                                     .range = bytes};
-  VkBufferView view;
-  check(device.vk.CreateBufferView(device.device(), &info, device.host.allocator, &view), "vkCreateBufferView", name,
-        bytes);
-  BufferView owned(device, view);
-  device.setName(VK_OBJECT_TYPE_BUFFER_VIEW, view, name);
-  return owned;
+  return {device, info, name, bytes};
 }
 
 }  // namespace
@@ -37,8 +32,7 @@ uint64_t newIdentity() {
 Buffer::Buffer(const Owner& owner, const char* name, BufferDomain domain, VkBufferUsageFlags usage)
     : owner_(owner), name_(name), domain_(domain), usage_(usage) {}
 
-bool Buffer::reserve(VkDeviceSize bytes) {
-  if (bytes <= capacity_ && capacity_ != 0) return false;
+VkDeviceSize Buffer::sizeFor(VkDeviceSize bytes) const {
   const Device::Impl& device = owner_.device();
   VkDeviceSize most = device.maxBufferBytes;
   if ((usage_ & kAsTexels) != 0) {
@@ -60,15 +54,18 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   // An odd number of times 256: lavapipe compiles a kernel anew for a texel buffer whose size is a power of two or a
   // multiple of 64 KiB, if its sizes were neither before, and the other way round.
   if ((usage_ & kAsTexels) != 0) wanted = roundedUp(wanted, 512) + 256;
-  const VkDeviceSize size = std::min(wanted, most);
+  return std::min(wanted, most);
+}
+
+bool Buffer::reserve(VkDeviceSize bytes) {
+  if (bytes <= capacity_ && capacity_ != 0) return false;
+  const Device::Impl& device = owner_.device();
+  const VkDeviceSize size = sizeFor(bytes);
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
   Memory memory;  // outlives the buffer in it, old or new
-  VkBuffer handle;
-  check(device.vk.CreateBuffer(device.device(), &info, device.host.allocator, &handle), "vkCreateBuffer", name_, size);
-  BufferHandle buffer(device, handle);
-  device.setName(VK_OBJECT_TYPE_BUFFER, handle, name_);
+  BufferHandle buffer(device, info, name_, size);
   MemoryRequest request{.name = name_};
-  device.vk.GetBufferMemoryRequirements(device.device(), handle, &request.requirements);
+  device.vk.GetBufferMemoryRequirements(device.device(), buffer.get(), &request.requirements);
   if (domain_ == BufferDomain::device) {
     request.preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   } else {
@@ -76,10 +73,10 @@ bool Buffer::reserve(VkDeviceSize bytes) {
     if (domain_ == BufferDomain::readback) request.preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   }
   memory = Memory(owner_, request);
-  check(device.vk.BindBufferMemory(device.device(), handle, memory.get(), memory.offset()), "vkBindBufferMemory", name_,
-        size);
+  check(device.vk.BindBufferMemory(device.device(), buffer.get(), memory.get(), memory.offset()), "vkBindBufferMemory",
+        name_, size);
   BufferView view;
-  if ((usage_ & kAsTexels) != 0) view = viewOf(device, handle, size, name_);
+  if ((usage_ & kAsTexels) != 0) view = viewOf(device, buffer.get(), size, name_);
   view_ = std::move(view);
   buffer_ = std::move(buffer);
   memory_ = std::move(memory);

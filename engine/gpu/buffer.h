@@ -1,10 +1,11 @@
-// Growable buffers, also as texels, and the staging buffers that upload a batch.
+// Growable buffers, also typed or as texels, and the staging buffers that upload a batch.
 #pragma once
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
+#include <vector>
 
-#include "gpu/handle.h"
 #include "gpu/memory.h"
 
 namespace radar::gpu {
@@ -44,6 +45,9 @@ class Buffer {
   std::byte* mapped() const { return memory_.mapped(); }
 
  private:
+  /// Of a buffer that has room for `bytes`, and some to spare.
+  VkDeviceSize sizeFor(VkDeviceSize bytes) const;
+
   Owner owner_;
   const char* name_;
   BufferDomain domain_;
@@ -53,6 +57,38 @@ class Buffer {
   BufferView view_;
   VkDeviceSize capacity_ = 0;
   uint64_t identity_ = 0;
+};
+
+/// A buffer with an element type, for the typed slots of kernels (gpu/kernel.h). Shaders read and write its elements as
+/// a storage buffer or, with the usage kAsTexels, read each as one or more texels.
+template <class T>
+class Array {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  /// `usage`: in addition to STORAGE_BUFFER.
+  Array(const Owner& owner, const char* name, BufferDomain domain, VkBufferUsageFlags usage = 0)
+      : buffer_(owner, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
+
+  /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew. The device must not
+  /// be using it.
+  bool reserve(VkDeviceSize count) { return buffer_.reserve(count * sizeof(T)); }
+
+  /// In elements.
+  VkDeviceSize capacity() const { return buffer_.capacity() / sizeof(T); }
+  /// Size of the buffer, at least that of `capacity()` elements.
+  VkDeviceSize bytes() const { return buffer_.capacity(); }
+  VkBuffer get() const { return buffer_.get(); }
+  /// Host address, unless resident on the device. Coherent.
+  T* mapped() const { return reinterpret_cast<T*>(buffer_.mapped()); }
+
+  VkBufferView view() const { return buffer_.view(); }
+  const Buffer& buffer() const { return buffer_; }
+  /// For uploads, copies and indirect dispatches.
+  operator const Buffer&() const { return buffer_; }
+
+ private:
+  Buffer buffer_;
 };
 
 /// Gathers copies of host data in staging buffers that it keeps, then records them as one upload.

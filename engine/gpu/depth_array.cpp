@@ -1,8 +1,8 @@
 #include "gpu/depth_array.h"
 
+#include "gpu/api.h"
 #include "gpu/barrier.h"
 #include "gpu/buffer.h"
-#include "gpu/check.h"
 #include "spirv/radar_shaders.h"
 
 namespace radar::gpu {
@@ -19,9 +19,7 @@ ImageView layerView(const Device::Impl& device, VkImage image, uint32_t first, u
                                    .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
                                    .format = kDepthFormat,
                                    .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, first, count}};
-  VkImageView view;
-  check(device.vk.CreateImageView(device.device(), &info, device.host.allocator, &view), "vkCreateImageView");
-  return {device, view};
+  return {device, info};
 }
 
 }  // namespace
@@ -60,9 +58,7 @@ RenderPass depthRenderPass(const Device::Impl& device) {
                                     .pSubpasses = &subpass,
                                     .dependencyCount = 2,
                                     .pDependencies = dependencies};
-  VkRenderPass renderPass;
-  check(device.vk.CreateRenderPass(device.device(), &info, device.host.allocator, &renderPass), "vkCreateRenderPass");
-  return {device, renderPass};
+  return {device, info};
 }
 
 Sampler texelSampler(const Device::Impl& device) {
@@ -72,9 +68,7 @@ Sampler texelSampler(const Device::Impl& device) {
                                  .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
-  VkSampler sampler;
-  check(device.vk.CreateSampler(device.device(), &info, device.host.allocator, &sampler), "vkCreateSampler");
-  return {device, sampler};
+  return {device, info};
 }
 
 const Shader& depthShader(const Device::Impl& device) {
@@ -96,10 +90,8 @@ DepthArray::DepthArray(const Owner& owner, const char* name, VkRenderPass render
                                .tiling = VK_IMAGE_TILING_OPTIMAL,
                                .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                         VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
-  VkImage image;
-  check(device.vk.CreateImage(device.device(), &info, device.host.allocator, &image), "vkCreateImage", what.c_str());
-  image_ = {device, image};
-  device.setName(VK_OBJECT_TYPE_IMAGE, image, name);
+  image_ = {device, info, what.c_str()};
+  const VkImage image = image_.get();
   MemoryRequest request{.preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, .isImage = true, .name = what.c_str()};
   device.vk.GetImageMemoryRequirements(device.device(), image, &request.requirements);
   memory_ = Memory(owner, request);
@@ -128,10 +120,7 @@ void DepthArray::beginPass(const Commands& commands, uint32_t first, uint32_t co
                                        .width = side_,
                                        .height = side_,
                                        .layers = count};
-    VkFramebuffer framebuffer;
-    check(device_->vk.CreateFramebuffer(device_->device(), &info, device_->host.allocator, &framebuffer),
-          "vkCreateFramebuffer", nullptr, count, "layers");
-    target.framebuffer = {*device_, framebuffer};
+    target.framebuffer = {*device_, info, nullptr, count, "layers"};
   }
   const VkClearValue clear{.depthStencil = {1.0f, 0}};
   const VkRenderPassBeginInfo begin{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,

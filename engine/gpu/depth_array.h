@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "gpu/handle.h"
+#include "gpu/device.h"
 #include "gpu/memory.h"
 #include "gpu/shader.h"
 

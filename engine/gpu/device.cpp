@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "gpu/api.h"
 #include "gpu/arithmetic.h"
-#include "gpu/check.h"
 #include "gpu/memory.h"
 #include "gpu/requirements.h"
 #include "math/float_environment.h"
@@ -106,10 +106,6 @@ std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks
   }
   return lines;
 }
-
-}  // namespace
-
-namespace {
 
 // Of what a host may have filled in wrongly, and no physical device is to blame for.
 std::vector<std::string> reasonsAgainst(const HostDevice& host) {

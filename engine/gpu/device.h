@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <typeindex>
+#include <utility>
 
 #include "gpu/api.h"
 #include "radar/device.h"
@@ -94,6 +95,74 @@ const T& Device::Impl::shared() const {
 }
 
 namespace gpu {
+
+/// Owns a child object of a VkDevice, which must outlive it.
+template <class Kind>
+class Handle {
+ public:
+  using Value = typename Kind::Value;
+  Handle() = default;
+  Handle(const Device::Impl& device, Value value) : device_(&device), value_(value) {}
+  /// Makes one, and names it, if `name` is given. Throws Error, which says what it is for and `size`: see check().
+  template <class Info>
+  Handle(const Device::Impl& device, const Info& info, const char* name = nullptr, uint64_t size = 0,
+         const char* unit = "bytes")
+      : Handle(device, made(device, info, name, size, unit)) {
+    if (name != nullptr) device.setName(Kind::kType, value_, name);
+  }
+  Handle(Handle&& other) noexcept
+      : device_(other.device_), value_(std::exchange(other.value_, static_cast<Value>(VK_NULL_HANDLE))) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  ~Handle() {
+    if (value_ != VK_NULL_HANDLE && !device_->abandoned)
+      (device_->vk.*Kind::kDestroy)(device_->device(), value_, device_->host.allocator);
+  }
+  Value get() const { return value_; }
+
+ private:
+  template <class Info>
+  static Value made(const Device::Impl& device, const Info& info, const char* name, uint64_t size, const char* unit) {
+    Value value;
+    check((device.vk.*Kind::kCreate)(device.device(), &info, device.host.allocator, &value), Kind::kCall, name, size,
+          unit);
+    return value;
+  }
+
+  const Device::Impl* device_ = nullptr;
+  Value value_ = VK_NULL_HANDLE;
+};
+
+#define RADAR_HANDLE(name, object, create, destroy, type) \
+  struct name##Kind {                                     \
+    using Value = Vk##object;                             \
+    static constexpr auto kCreate = &Api::create;         \
+    static constexpr auto kDestroy = &Api::destroy;       \
+    static constexpr const char* kCall = "vk" #create;    \
+    static constexpr auto kType = VK_OBJECT_TYPE_##type;  \
+  };                                                      \
+  using name = Handle<name##Kind>;
+RADAR_HANDLE(CommandPool, CommandPool, CreateCommandPool, DestroyCommandPool, COMMAND_POOL)
+RADAR_HANDLE(DescriptorPool, DescriptorPool, CreateDescriptorPool, DestroyDescriptorPool, DESCRIPTOR_POOL)
+RADAR_HANDLE(DescriptorSetLayout, DescriptorSetLayout, CreateDescriptorSetLayout, DestroyDescriptorSetLayout,
+             DESCRIPTOR_SET_LAYOUT)
+RADAR_HANDLE(DeviceMemory, DeviceMemory, AllocateMemory, FreeMemory, DEVICE_MEMORY)
+RADAR_HANDLE(Fence, Fence, CreateFence, DestroyFence, FENCE)
+RADAR_HANDLE(Framebuffer, Framebuffer, CreateFramebuffer, DestroyFramebuffer, FRAMEBUFFER)
+RADAR_HANDLE(ImageHandle, Image, CreateImage, DestroyImage, IMAGE)
+RADAR_HANDLE(ImageView, ImageView, CreateImageView, DestroyImageView, IMAGE_VIEW)
+RADAR_HANDLE(BufferHandle, Buffer, CreateBuffer, DestroyBuffer, BUFFER)
+RADAR_HANDLE(BufferView, BufferView, CreateBufferView, DestroyBufferView, BUFFER_VIEW)
+RADAR_HANDLE(Pipeline, Pipeline, CreateComputePipelines, DestroyPipeline, PIPELINE)
+RADAR_HANDLE(PipelineLayout, PipelineLayout, CreatePipelineLayout, DestroyPipelineLayout, PIPELINE_LAYOUT)
+RADAR_HANDLE(QueryPool, QueryPool, CreateQueryPool, DestroyQueryPool, QUERY_POOL)
+RADAR_HANDLE(RenderPass, RenderPass, CreateRenderPass, DestroyRenderPass, RENDER_PASS)
+RADAR_HANDLE(Sampler, Sampler, CreateSampler, DestroySampler, SAMPLER)
+RADAR_HANDLE(ShaderModule, ShaderModule, CreateShaderModule, DestroyShaderModule, SHADER_MODULE)
+#undef RADAR_HANDLE
 
 /// A device that makes pipelines and tells of them, if its driver can. Its arithmetic is not checked.
 std::unique_ptr<Device::Impl> openForStatistics(uint32_t index);

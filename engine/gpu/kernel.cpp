@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "shaders/shared/interop.h"
 
 namespace radar::gpu {
@@ -28,12 +28,7 @@ DescriptorSetLayout makeSetLayout(const Device::Impl& device, const Shader& shad
   const VkDescriptorSetLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                              .bindingCount = static_cast<uint32_t>(bindings.size()),
                                              .pBindings = bindings.data()};
-  VkDescriptorSetLayout layout;
-  check(device.vk.CreateDescriptorSetLayout(device.device(), &info, device.host.allocator, &layout),
-        "vkCreateDescriptorSetLayout", shader.name);
-  DescriptorSetLayout owned(device, layout);
-  device.setName(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout, shader.name);
-  return owned;
+  return {device, info, shader.name};
 }
 
 PipelineLayout makePipelineLayout(const Device::Impl& device, VkDescriptorSetLayout setLayout, const Shader& shader) {
@@ -43,12 +38,7 @@ PipelineLayout makePipelineLayout(const Device::Impl& device, VkDescriptorSetLay
                                         .pSetLayouts = &setLayout,
                                         .pushConstantRangeCount = shader.pushBytes > 0 ? 1u : 0u,
                                         .pPushConstantRanges = &range};
-  VkPipelineLayout layout;
-  check(device.vk.CreatePipelineLayout(device.device(), &info, device.host.allocator, &layout),
-        "vkCreatePipelineLayout", shader.name);
-  PipelineLayout owned(device, layout);
-  device.setName(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, shader.name);
-  return owned;
+  return {device, info, shader.name};
 }
 
 // A pool for one set.
@@ -59,12 +49,7 @@ DescriptorPool makePool(const Device::Impl& device, const Shader& shader) {
                                         .maxSets = 1,
                                         .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                         .pPoolSizes = sizes.data()};
-  VkDescriptorPool pool;
-  check(device.vk.CreateDescriptorPool(device.device(), &info, device.host.allocator, &pool), "vkCreateDescriptorPool",
-        shader.name);
-  DescriptorPool owned(device, pool);
-  device.setName(VK_OBJECT_TYPE_DESCRIPTOR_POOL, pool, shader.name);
-  return owned;
+  return {device, info, shader.name};
 }
 
 }  // namespace

@@ -9,10 +9,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "gpu/array.h"
+#include "gpu/buffer.h"
 #include "gpu/depth_array.h"
-#include "gpu/handle.h"
-#include "gpu/pipeline.h"
+#include "gpu/device.h"
 #include "gpu/shader.h"
 #include "shaders/shared/slot.h"
 
@@ -25,6 +24,11 @@ constexpr uint32_t groupsFor(uint64_t items, uint32_t perGroup) {
 
 /// Of push constants: supported by every device.
 inline constexpr uint32_t kMostPushBytes = 128;
+
+enum class Subgroups {
+  any,  ///< of any size
+  full  ///< all of Device::Impl::subgroupSize invocations: a workgroup of that size is one subgroup
+};
 
 /// A shader, the values of its specialization constants 0, 1, ... (0 unless given), and its subgroups.
 struct Program {
@@ -132,5 +136,14 @@ void compile(const Device::Impl& device, const Program& program);
 
 /// Makes the program's pipeline anew.
 KernelReport reportOf(const Device::Impl& device, const Program& program);
+
+/// Makes a pipeline: drivers compile it now, and some take their time. `constants`: values of specialization constants
+/// 0, 1, ..., if the shader has any.
+Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
+                         const char* name, std::span<const uint32_t> constants = {},
+                         Subgroups subgroups = Subgroups::any);
+/// Of a vertex shader, for depth-only draws of gpu::Vertex in a depthRenderPass().
+Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
+                       const char* name);
 
 }  // namespace radar::gpu

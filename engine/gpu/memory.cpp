@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 
 namespace radar::gpu {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gpu/device.h"
-#include "gpu/handle.h"
 
 namespace radar::gpu {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "gpu/device.h"
 #include "gpu/requirements.h"
 #include "math/float_environment.h"
@@ -20,35 +20,19 @@ Device::Impl::Owned::~Owned() {
 
 namespace {
 
-const char* typeText(VkPhysicalDeviceType type) {
-  switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return "discrete GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return "integrated GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return "virtual GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-      return "CPU";
-    default:
-      return "other";
-  }
-}
-
+struct DeviceType {
+  VkPhysicalDeviceType type;
+  const char* name;
+};
 // Preferred first, as listed in DeviceOptions::index.
-int preference(VkPhysicalDeviceType type) {
-  switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return 2;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-      return 3;
-    default:
-      return 4;
-  }
+constexpr DeviceType kTypes[] = {{VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, "discrete GPU"},
+                                 {VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU, "integrated GPU"},
+                                 {VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU, "virtual GPU"},
+                                 {VK_PHYSICAL_DEVICE_TYPE_CPU, "CPU"},
+                                 {VK_PHYSICAL_DEVICE_TYPE_OTHER, "other"}};
+
+const DeviceType* typeOf(const VkPhysicalDeviceProperties& device) {
+  return std::ranges::find(std::begin(kTypes), std::end(kTypes) - 1, device.deviceType, &DeviceType::type);
 }
 
 bool has(const std::vector<VkExtensionProperties>& extensions, const char* name) {
@@ -153,7 +137,7 @@ DeviceReport report(const gpu::Api& vk, VkPhysicalDevice device) {
   const gpu::DeviceFacts facts = gpu::factsOf(vk, device);
   return {properties.deviceName,
           gpu::driverText(vk, device, properties),
-          typeText(properties.deviceType),
+          typeOf(properties)->name,
           gpu::unsupportedReasons(facts, Mode::contact),
           gpu::unsupportedReasons(facts, Mode::sampled),
           gpu::versionText(facts.apiVersion),
@@ -169,7 +153,7 @@ VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>&
   }
   std::vector<std::string> lines;
   VkPhysicalDevice best = VK_NULL_HANDLE;
-  int bestPreference = 0;
+  const DeviceType* bestType = nullptr;
   for (uint32_t i = 0; i < devices.size(); ++i) {
     VkPhysicalDeviceProperties properties;
     vk.GetPhysicalDeviceProperties(devices[i], &properties);
@@ -177,11 +161,11 @@ VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>&
     for (const std::string& reason : reasons) {
       lines.push_back("device " + std::to_string(i) + ", " + properties.deviceName + ": " + reason);
     }
-    const int rank = preference(properties.deviceType);
-    const bool wanted = index == kNone ? best == VK_NULL_HANDLE || rank < bestPreference : i == index;
+    const DeviceType* const type = typeOf(properties);
+    const bool wanted = index == kNone ? best == VK_NULL_HANDLE || type < bestType : i == index;
     if (reasons.empty() && wanted) {
       best = devices[i];
-      bestPreference = rank;
+      bestType = type;
     }
   }
   if (best == VK_NULL_HANDLE) {

@@ -1,5 +1,4 @@
-#include "gpu/pipeline.h"
-
+// Makes pipelines.
 #include <chrono>
 #include <cstring>
 #include <future>
@@ -8,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "gpu/check.h"
-#include "gpu/depth_array.h"
+#include "gpu/api.h"
+#include "gpu/kernel.h"
 #include "shaders/shared/interop.h"
 
 namespace radar::gpu {
@@ -19,12 +18,7 @@ namespace {
 ShaderModule shaderModule(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name) {
   const VkShaderModuleCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
-  VkShaderModule module;
-  check(device.vk.CreateShaderModule(device.device(), &info, device.host.allocator, &module), "vkCreateShaderModule",
-        name);
-  ShaderModule owned(device, module);
-  device.setName(VK_OBJECT_TYPE_SHADER_MODULE, module, name);
-  return owned;
+  return {device, info, name};
 }
 
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const ShaderModule& module) {

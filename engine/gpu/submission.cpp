@@ -5,8 +5,8 @@
 #include <chrono>
 #include <thread>
 
+#include "gpu/api.h"
 #include "gpu/barrier.h"
-#include "gpu/check.h"
 
 namespace radar::gpu {
 
@@ -24,26 +24,20 @@ Submission::Submission(const Device::Impl& device, bool timestamps)
   const VkCommandPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                          .queueFamilyIndex = device.host.queueFamily};
-  VkCommandPool pool;
-  check(device.vk.CreateCommandPool(device.device(), &poolInfo, device.host.allocator, &pool), "vkCreateCommandPool");
-  pool_ = {device, pool};
+  pool_ = {device, poolInfo};
   const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                             .commandPool = pool,
+                                             .commandPool = pool_.get(),
                                              .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                              .commandBufferCount = 1};
   check(device.vk.AllocateCommandBuffers(device.device(), &allocate, &commands_.handle), "vkAllocateCommandBuffers");
   commands_.api = &device.vk;
   const VkFenceCreateInfo fenceInfo{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  VkFence fence;
-  check(device.vk.CreateFence(device.device(), &fenceInfo, device.host.allocator, &fence), "vkCreateFence");
-  fence_ = {device, fence};
+  fence_ = {device, fenceInfo};
   if (!timestamps_) return;
   const VkQueryPoolCreateInfo queryInfo{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                         .queryCount = kMaxStages + 1};
-  VkQueryPool queries;
-  check(device.vk.CreateQueryPool(device.device(), &queryInfo, device.host.allocator, &queries), "vkCreateQueryPool");
-  queries_ = {device, queries};
+  queries_ = {device, queryInfo};
 }
 
 Commands Submission::begin() {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "gpu/device.h"
-#include "gpu/handle.h"
 #include "radar/radar.h"
 
 namespace radar::gpu {

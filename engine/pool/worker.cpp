@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <new>
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "math/float_environment.h"
 
 namespace radar {

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "gpu/barrier.h"
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "scene/parallel.h"
 #include "scene/placement.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "gpu/array.h"
+#include "gpu/buffer.h"
 #include "gpu/submission.h"
 #include "scene/arena.h"
 #include "scene/scene.h"

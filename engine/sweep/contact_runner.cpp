@@ -6,7 +6,7 @@
 
 #include "contact/decode.h"
 #include "cpu/clearance.h"
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "query/route.h"
 #include "query/swept.h"
 #include "scene/parallel.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "gpu/submission.h"
 #include "query/hits.h"
 

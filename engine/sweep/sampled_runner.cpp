@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "query/cancelled.h"
 #include "sampled/decode.h"
 

@@ -1,7 +1,7 @@
 // A batch travels: begin() -> its mode's runner plans and submits it ... finish() -> the runner decodes it.
 #include "sweep/sweeper.h"
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "math/float_environment.h"
 #include "query/cancelled.h"
 #include "scene/scene_copy.h"

@@ -6,7 +6,7 @@
 #include "faults/attempt.h"
 #include "faults/scenario.h"
 #include "fuzz/check_recorded.h"
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
 #include "support/same_bits.h"

@@ -6,7 +6,7 @@
 
 #include "faults/host_memory.h"
 #include "fuzz/target.h"
-#include "gpu/check.h"
+#include "gpu/api.h"
 #include "gpu/submission.h"
 #include "radar/recorder.h"
 #include "soak/tally.h"

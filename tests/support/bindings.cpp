@@ -1,6 +1,6 @@
 #include "support/bindings.h"
 
-#include "gpu/check.h"
+#include "gpu/api.h"
 
 namespace radar::test {
 
@@ -14,10 +14,8 @@ Bindings::Bindings(const Device::Impl& device, uint32_t buffers, uint32_t pushBy
   }
   const VkDescriptorSetLayoutCreateInfo setInfo{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, .bindingCount = buffers, .pBindings = slots.data()};
-  VkDescriptorSetLayout setLayout;
-  gpu::check(device.vk.CreateDescriptorSetLayout(device.device(), &setInfo, device.host.allocator, &setLayout),
-             "vkCreateDescriptorSetLayout");
-  setLayout_ = {device, setLayout};
+  setLayout_ = {device, setInfo};
+  const VkDescriptorSetLayout setLayout = setLayout_.get();
 
   const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes};
   const VkPipelineLayoutCreateInfo layoutInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -25,20 +23,14 @@ Bindings::Bindings(const Device::Impl& device, uint32_t buffers, uint32_t pushBy
                                               .pSetLayouts = &setLayout,
                                               .pushConstantRangeCount = 1,
                                               .pPushConstantRanges = &range};
-  VkPipelineLayout layout;
-  gpu::check(device.vk.CreatePipelineLayout(device.device(), &layoutInfo, device.host.allocator, &layout),
-             "vkCreatePipelineLayout");
-  pipelineLayout_ = {device, layout};
+  pipelineLayout_ = {device, layoutInfo};
 
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, buffers};
   const VkDescriptorPoolCreateInfo poolInfo{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 1, .pPoolSizes = &size};
-  VkDescriptorPool pool;
-  gpu::check(device.vk.CreateDescriptorPool(device.device(), &poolInfo, device.host.allocator, &pool),
-             "vkCreateDescriptorPool");
-  pool_ = {device, pool};
+  pool_ = {device, poolInfo};
   const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                             .descriptorPool = pool,
+                                             .descriptorPool = pool_.get(),
                                              .descriptorSetCount = 1,
                                              .pSetLayouts = &setLayout};
   gpu::check(device.vk.AllocateDescriptorSets(device.device(), &allocate, &set_), "vkAllocateDescriptorSets");

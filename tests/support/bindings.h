@@ -2,7 +2,6 @@
 #pragma once
 
 #include "gpu/device.h"
-#include "gpu/handle.h"
 
 namespace radar::test {
 

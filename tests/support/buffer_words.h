@@ -4,7 +4,7 @@
 #include <cstring>
 #include <vector>
 
-#include "gpu/array.h"
+#include "gpu/buffer.h"
 
 namespace radar::test {
 

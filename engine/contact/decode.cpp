@@ -108,7 +108,7 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
   }
   const Result result = decideBy(cpu::FirstContact(query, motion), pairs, query, motion, farthest);
   if (result.status == Status::clear && found.detected == Detected::yes) {
-    throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
+    throw Error(Error::Kind::internal, "the contact search lost a certain contact");
   }
   return result;
 }

@@ -35,7 +35,7 @@ class UnresolvedPairs {
 /// The answer to a query from its device answer `found` and `pairs`, at least one, of UnresolvedPairs.
 /// `motion`: that of the search. For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its
 /// clearance (cpu/clearance.h).
-/// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `farthest`:
+/// Throws Error (internal) if the search found a certain contact, but none of `pairs` meets. `farthest`:
 /// Mesh::farthest of the meshes that were searched.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
                         const Motion& motion, double tolerance, std::span<const Vector> farthest);

@@ -89,7 +89,7 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages, const st
   wait();
   submission_.addTimes(stages);
   while (counts().broken == 0 && pass_.tasksLeft(counts()) != 0) {
-    if (submissions_ == kMostSubmissions) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
+    if (submissions_ == kMostSubmissions) throw Error(Error::Kind::internal, "the contact search makes no progress");
     throwIfStopped(stop);
     pass_.stageMore(counts());
     const auto begun = now_();

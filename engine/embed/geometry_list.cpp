@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "embed/host_format.h"
-#include "embed/refusal.h"
 #include "gpu/kernel.h"
 #include "math/rounding.h"
 
@@ -71,9 +70,9 @@ void addGroup(MovedList& list, const MovedObjects& group, uint32_t firstByte, st
   for (size_t k = 0; k < group.objects.size(); ++k) {
     const ObjectId id = group.objects[k];
     if (id >= scene.objects.size() || !scene.objects[id].used) {
-      throw Refusal("geometry: object " + std::to_string(id) + " does not exist");
+      throw Error("geometry: object " + std::to_string(id) + " does not exist");
     }
-    if (isNamed[id]) throw Refusal("geometry: objects: expected each at most once");
+    if (isNamed[id]) throw Error("geometry: objects: expected each at most once");
     isNamed[id] = true;
     gpu::Moved moved = movedOf(id, scene);
     moved.firstByte = static_cast<uint32_t>(firstByte + k * group.stride);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "embed/host_format.h"
-#include "embed/refusal.h"
 #include "gpu/barrier.h"
 #include "math/rounding.h"
 #include "shaders/contact/interop.h"
@@ -82,8 +81,8 @@ std::vector<uint32_t> HostGeometryPass::copyFrom(const HostGeometry& geometry, c
     sources_.push_back({buffer, {first, end, bytes}});
     end = gpu::roundedUp(end + bytes, 8);
     if (end + sizeof(uint32_t) > limit) {
-      throw Refusal("the host's geometry exceeds the " + std::to_string(limit) +
-                    " bytes of the device's maxStorageBufferRange");
+      throw Error("the host's geometry exceeds the " + std::to_string(limit) +
+                  " bytes of the device's maxStorageBufferRange");
     }
   };
   for (const DeformedMesh& deformed : geometry.meshes) {

@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include "embed/host_format.h"
-#include "embed/refusal.h"
 #include "gpu/barrier.h"
 #include "spirv/radar_shaders.h"
 
@@ -48,8 +47,8 @@ void HostQueriesPass::stage(const HostQueries& queries) {
   const VkDeviceSize bytes = span + 2 * sizeof(uint32_t);
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
   if (std::max(bytes, queries.count * sizeof(gpu::Sensor)) > limit) {
-    throw Refusal("the host's queries, or their sensors, exceed the " + std::to_string(limit) +
-                  " bytes of the device's maxStorageBufferRange");
+    throw Error("the host's queries, or their sensors, exceed the " + std::to_string(limit) +
+                " bytes of the device's maxStorageBufferRange");
   }
   words_.reserve(bytes / sizeof(uint32_t));
   run_.begin();

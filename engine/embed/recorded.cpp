@@ -5,7 +5,6 @@
 #include "contact/decode.h"
 #include "cpu/clearance.h"
 #include "embed/host_queries.h"
-#include "embed/refusal.h"
 #include "query/route.h"
 #include "query/swept.h"
 
@@ -62,8 +61,8 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
     objects[i] = searchesEach ? mayReach(query, scene, geometry) : std::vector<ObjectId>{kNone};
     const auto several = static_cast<uint32_t>(searchesEach ? objects[i].size() : 0);
     if (several > kMostSearches) {
-      throw Refusal("query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
-                    " objects in reach, got " + std::to_string(several));
+      throw Error("query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
+                  " objects in reach, got " + std::to_string(several));
     }
     pastOneObject += several;
     hitOffsets.push_back(end);
@@ -73,8 +72,8 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
     tolerances.push_back(cpu::toleranceOf(query, scene.meshes[query.mesh]));
   }
   if (pastOneObject > mostSearches) {
-    throw Refusal("expected at most " + std::to_string(mostSearches) +
-                  " searches past one object each (Capacity::searches), got " + std::to_string(pastOneObject));
+    throw Error("expected at most " + std::to_string(mostSearches) +
+                " searches past one object each (Capacity::searches), got " + std::to_string(pastOneObject));
   }
   hitOffsets.push_back(end);
   known.assign(end, clearAnswer());

@@ -11,7 +11,6 @@
 #include "embed/host_queries.h"
 #include "embed/known_recordings.h"
 #include "embed/recorded.h"
-#include "embed/refusal.h"
 #include "gpu/barrier.h"
 #include "math/float_environment.h"
 #include "query/route.h"
@@ -70,14 +69,15 @@ struct Recorder::Impl {
   /// What both kinds of record() do before they record.
   GpuScene::Staged stage(std::span<const Query> queries, const HostGeometry& hostGeometry);
   GpuScene::Staged stage(const HostQueries& queries, const HostGeometry& hostGeometry);
-  /// The same, on behalf of a call. `queries`: Queries or HostQueries.
+  /// The same, on behalf of a call, which an Error that is of the call names first. `queries`: Queries or HostQueries.
   template <class Queries>
   GpuScene::Staged stageFor(const char* call, const Queries& queries, const HostGeometry& hostGeometry) {
     requireExecuted(call);
     try {
       return stage(queries, hostGeometry);
-    } catch (const Refusal& refusal) {
-      throw Error(std::string(call) + ": " + refusal.what());
+    } catch (const Error& error) {
+      if (error.kind != Error::Kind::call) throw;
+      throw Error(std::string(call) + ": " + error.what());
     }
   }
   void begin(const HostGeometry& hostGeometry);
@@ -103,22 +103,22 @@ struct Recorder::Impl {
 
 void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   if (queries.size() > capacity.queries) {
-    throw Refusal("expected at most " + std::to_string(capacity.queries) + " queries, got " +
-                  std::to_string(queries.size()));
+    throw Error("expected at most " + std::to_string(capacity.queries) + " queries, got " +
+                std::to_string(queries.size()));
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
     if (const char* what = wrong.empty() ? onlyForCpu(queries[i], scene.impl(), false) : nullptr) {
       wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
     }
-    if (!wrong.empty()) throw Refusal("query " + std::to_string(i) + ": " + wrong);
+    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
   }
 }
 
 void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const {
-  if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Refusal("queries: " + wrong);
-  if (scene.impl().moving > 0) throw Refusal("queries: expected a scene in which no object has a motion");
-  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Refusal("geometry: " + wrong);
+  if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("queries: " + wrong);
+  if (scene.impl().moving > 0) throw Error("queries: expected a scene in which no object has a motion");
+  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("geometry: " + wrong);
 }
 
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -197,7 +197,7 @@ void Recorder::Impl::begin(const HostGeometry& hostGeometry) {
 
 GpuScene::Staged Recorder::Impl::stage(std::span<const Query> queries, const HostGeometry& hostGeometry) {
   validateAll(queries);
-  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Refusal("geometry: " + wrong);
+  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("geometry: " + wrong);
   begin(hostGeometry);
   recorded.plan(queries, scene.impl(), geometry, capacity.searches);
   gathers.stage(recorded.gathered);

@@ -33,8 +33,9 @@ void* findLoader() {
 
 PFN_vkVoidFunction required(PFN_vkVoidFunction function, const char* name) {
   if (function == nullptr)
-    throw Error(std::string("the Vulkan function ") + name +
-                " is missing: instance (VkApplicationInfo::apiVersion) and device need Vulkan 1.3");
+    throw Error(Error::Kind::device,
+                std::string("the Vulkan function ") + name +
+                    " is missing: instance (VkApplicationInfo::apiVersion) and device need Vulkan 1.3");
   return function;
 }
 
@@ -43,7 +44,7 @@ PFN_vkVoidFunction required(PFN_vkVoidFunction function, const char* name) {
 PFN_vkGetInstanceProcAddr systemLoader() {
   static void* const kFound = findLoader();
   if (kFound == nullptr) {
-    throw Error(std::string("no Vulkan loader: ") + kLoader + " is not installed");
+    throw Error(Error::Kind::device, std::string("no Vulkan loader: ") + kLoader + " is not installed");
   }
   return reinterpret_cast<PFN_vkGetInstanceProcAddr>(kFound);
 }

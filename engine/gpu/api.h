@@ -77,7 +77,7 @@ struct Commands {
 
 /// A scene or a batch is larger than the device's limits allow; no Vulkan call failed, and nothing was submitted.
 struct LimitError : Error {
-  using Error::Error;
+  explicit LimitError(const std::string& what) : Error(Kind::device, what) {}
 };
 
 const char* resultName(VkResult result);

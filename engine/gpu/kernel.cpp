@@ -108,7 +108,7 @@ class Kernels {
 };
 
 [[noreturn]] void fail(const Shader& shader, const std::string& what) {
-  throw Error(std::string("shader \"") + shader.name + "\"" + what);
+  throw Error(Error::Kind::internal, std::string("shader \"") + shader.name + "\"" + what);
 }
 
 [[noreturn]] void fail(const Shader& shader, const Binding& binding, const std::string& what) {

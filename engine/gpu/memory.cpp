@@ -29,7 +29,7 @@ uint32_t typeFor(const VkPhysicalDeviceMemoryProperties& memory, const MemoryReq
       if (isAllowed && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
     }
   }
-  throw Error("no memory type has the properties " + std::to_string(request.required));
+  throw Error(Error::Kind::device, "no memory type has the properties " + std::to_string(request.required));
 }
 
 }  // namespace

@@ -78,7 +78,8 @@ std::unique_ptr<Device::Impl::Owned> openInstance(std::function<void(const std::
   const bool listens = owned->onValidation != nullptr;
   const std::vector<VkExtensionProperties> available = extensionsOf(owned->vk);
   if (listens && !has(available, VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) {
-    throw Error("DeviceOptions::onValidation: the instance extension VK_EXT_debug_utils is missing");
+    throw Error(Error::Kind::device,
+                "DeviceOptions::onValidation: the instance extension VK_EXT_debug_utils is missing");
   }
   std::vector<const char*> extensions;
   if (listens) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -169,7 +170,8 @@ VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>&
     }
   }
   if (best == VK_NULL_HANDLE) {
-    throw Error(index == kNone ? "no usable Vulkan device" : "device " + std::to_string(index) + " cannot be used",
+    throw Error(Error::Kind::device,
+                index == kNone ? "no usable Vulkan device" : "device " + std::to_string(index) + " cannot be used",
                 VK_SUCCESS, lines);
   }
   return best;

@@ -24,7 +24,7 @@ std::vector<Device> openDevices(std::span<const uint32_t> indices, const DeviceO
         lines.push_back("device " + std::to_string(i) + ", " + reports[i].name + ": " + reason);
       }
     }
-    if (wanted.empty()) throw Error("no usable Vulkan device", VK_SUCCESS, lines);
+    if (wanted.empty()) throw Error(Error::Kind::device, "no usable Vulkan device", VK_SUCCESS, lines);
   }
   std::vector<Device> devices;
   devices.reserve(wanted.size());
@@ -47,7 +47,8 @@ struct Pool::Impl {
       }
     } catch (const std::system_error& error) {
       workQueue.close();
-      throw Error(std::string("Pool: expected to start a thread for each device, got: ") + error.what());
+      throw Error(Error::Kind::device,
+                  std::string("Pool: expected to start a thread for each device, got: ") + error.what());
     } catch (...) {
       workQueue.close();
       throw;

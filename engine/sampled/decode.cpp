@@ -1,7 +1,5 @@
 #include "sampled/decode.h"
 
-#include <vulkan/vulkan_core.h>
-
 namespace radar {
 
 Result decodeClear() {
@@ -13,7 +11,7 @@ Result decodeClear() {
 
 Result decodeSampled(const gpu::Answer& answer, const Result& contact, std::span<const gpu::UnresolvedPair* const> open,
                      const Query& query, uint32_t resolution) {
-  if (contact.status == Status::invalid) throw Error("mode sampled lost a certain contact", VK_ERROR_UNKNOWN);
+  if (contact.status == Status::invalid) throw Error(Error::Kind::internal, "mode sampled lost a certain contact");
   Result result = open.empty() ? contact : decideUnresolved(contact, open, query, Motion(query), 0, {});
   // That no proposed pair meets proves nothing.
   if (result.status == Status::clear) result = Result(Status::undecided);

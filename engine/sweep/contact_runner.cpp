@@ -174,7 +174,7 @@ void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span
   std::vector<Result> results(found.results.begin(), found.results.end());
   for (const Result& result : results) {
     if (result.flags != 0 || result.status != Status::invalid) continue;
-    throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
+    throw Error(Error::Kind::internal, "the contact search lost a certain contact");
   }
   const Deciding how{*resident_.farthest(), kMostDecided, options_.cpuThreads, flight.stop};
   flight.answers.stats.cpuPairs += decideAll(found.unresolved, how, [&](uint32_t search, ObjectId object) {

@@ -16,7 +16,7 @@ Flight::Flight(std::span<const Query> asked, bool timestamps, std::stop_token wa
       stop(std::move(wanted)) {}
 
 void Flight::fail(size_t query, const Error& error) {
-  if (error.vulkan == VK_SUCCESS) throw error;
+  if (error.vulkan == VK_SUCCESS && error.kind != Error::Kind::internal) throw error;
   if (!failure) failure = error;
   answers.results[query] = Result();
   answers.reasons[query] = error.what();

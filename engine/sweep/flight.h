@@ -39,7 +39,8 @@ struct Flight {
   // Mode sampled.
   std::vector<size_t> drawn;  ///< queries of the last submission, until it is collected
 
-  /// Records that a failed Vulkan call left the query without an answer; rethrows any other error.
+  /// Records that a failed Vulkan call, or what the device computed, left the query without an answer; rethrows any
+  /// other error.
   void fail(size_t query, const Error& error);
   /// If a call failed for lack of memory, or because the device is lost, records that, and returns true: its queries
   /// can be answered otherwise.

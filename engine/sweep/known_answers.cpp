@@ -149,7 +149,7 @@ AnswerCheck orAllWrong(const char* kind, size_t asked, const std::function<Answe
   try {
     return check();
   } catch (const Error& error) {
-    if (error.vulkan != VK_ERROR_UNKNOWN) throw;
+    if (error.kind != Error::Kind::internal) throw;
     const auto all = static_cast<uint32_t>(asked);
     return {
         .kind = kind, .asked = all, .wrong = all, .stage = nameOf(Stage::searching, false), .firstWrong = error.what()};

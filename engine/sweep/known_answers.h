@@ -22,7 +22,8 @@ struct KnownScene {
 /// The seeds of the scenes by which a device proves itself.
 inline constexpr uint64_t kProofs = 2;
 
-/// What `check` returns. If it throws an error to which only the device's answers can lead, all `asked` are wrong.
+/// What `check` returns. If it throws an internal error, to which only the device's answers can lead, all `asked` are
+/// wrong.
 AnswerCheck orAllWrong(const char* kind, size_t asked, const std::function<AnswerCheck()>& check);
 /// Compares answers with the CPU's, to the bit. `places`: the device has placed the geometry (sweep/difference.h).
 AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact, bool places = false);

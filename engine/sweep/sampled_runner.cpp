@@ -167,7 +167,9 @@ void SampledRunner::begin(Flight& flight) {
 
 Scopes SampledRunner::scopes(const Query& query) {
   const ViewPlan plan = planOf(query, options_.select ? Drawn::wholeMask : Drawn::everything);
-  if (std::string reason = reasonAgainst(plan); !reason.empty()) throw Error("scopes: " + reason);
+  if (std::string reason = reasonAgainst(plan); !reason.empty()) {
+    throw Error(plan.outOfRange.empty() ? Error::Kind::device : Error::Kind::call, "scopes: " + reason);
+  }
   const ViewPlan* plans[] = {&plan};
   drawn_ = packBatch(plans, device_.choosesLayers);
   StoredScopes stored;

@@ -77,8 +77,8 @@ int main(int argc, char** argv) try {
 } catch (const radar::Error& error) {
   std::string message = error.what();
   for (const std::string& reason : error.reasons) message += "\n  " + reason;
-  // A failed Vulkan call, or no device: what a person can do about it.
-  if (error.vulkan != 0 || !error.reasons.empty()) message.append("\n").append(kNoDeviceHint);
+  // What a person can do about it.
+  if (error.kind == radar::Error::Kind::device) message.append("\n").append(kNoDeviceHint);
   return fail(message);
 } catch (const std::exception& error) {
   return fail(error.what());

@@ -1,7 +1,7 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// Meshes and objects are in scene.h, queries in query.h, answers in answers.h, Vulkan devices in device.h, a host's
-// buffers in host.h, Eigen's matrices in eigen.h. Who answers:
+// Meshes and objects are in scene.h, queries in query.h, answers in answers.h, Vulkan devices in device.h, a scene's
+// copy on one in scene_copy.h, a host's buffers in host.h, Eigen's matrices in eigen.h. Who answers:
 //
 //   one device, or just the answers   Sweeper     (here)           run() blocks; the CPU takes what no device does
 //   no device                         CpuSweeper  (cpu_sweeper.h)  the same bits
@@ -13,8 +13,8 @@
 // Threads: each object of this interface may be used by one thread at a time. Different objects are independent, except
 // that a Sweeper reads its Scene during run() and scopes().
 //
-// Errors: a failed set-up, or an argument that breaks its contract, throws radar::Error. A query that cannot be
-// answered gets Status::invalid; other queries are unaffected.
+// Errors: a failed set-up, or an argument that breaks its contract, throws radar::Error (error.h), which tells the two
+// apart. A query that cannot be answered gets Status::invalid; other queries are unaffected.
 //
 // Method: T. Iida, H. Yamachi, Y. Kambayashi, Y. Tsujimura, "Comparison and Multi-GPU based Implementation of a
 // Collision Detection Method with Z-buffer in Cyber Space". R, M, L and d are that paper's; docs/method.md has the

@@ -5,6 +5,7 @@
 
 #include "math/float_environment.h"
 #include "query/hits.h"
+#include "query/route.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/parallel.h"
 
@@ -91,11 +92,7 @@ void CpuSweeper::sync() {
 
 Answers CpuSweeper::run(std::span<const Query> queries, const std::stop_token& stop) {
   const FloatEnvironment floats;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    if (const std::string wrong = validate(queries[i], impl_->scene); !wrong.empty()) {
-      throw Error("run: query " + std::to_string(i) + ": " + wrong);
-    }
-  }
+  requireValid(queries, impl_->scene);
   Answers answers = unanswered(queries);
   const uint64_t before = impl_->search.pairs();
   try {

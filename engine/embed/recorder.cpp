@@ -106,13 +106,7 @@ void Recorder::Impl::validateAll(std::span<const Query> queries) const {
     throw Error("expected at most " + std::to_string(capacity.queries) + " queries, got " +
                 std::to_string(queries.size()));
   }
-  for (size_t i = 0; i < queries.size(); ++i) {
-    std::string wrong = validate(queries[i], scene);
-    if (const char* what = wrong.empty() ? onlyForCpu(queries[i], scene.impl(), false) : nullptr) {
-      wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
-    }
-    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
-  }
+  requireValid(queries, scene, Mode::contact, true);
 }
 
 void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const {

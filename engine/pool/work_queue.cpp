@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gpu/submission.h"
+#include "query/route.h"
 
 namespace radar {
 
@@ -19,13 +20,6 @@ void addStats(SweepStats& sum, const SweepStats& stats) {
   sum.cpuQueries += stats.cpuQueries;
   if (sum.lost.empty()) sum.lost = stats.lost;
   for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
-}
-
-void validateAll(std::span<const Query> queries, Mode mode, const Scene& scene) {
-  for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = validate(queries[i], scene, mode);
-    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
-  }
 }
 
 std::shared_ptr<Job> jobOf(std::vector<Query> queries, Mode mode, std::stop_token stop, size_t workers) {
@@ -53,7 +47,7 @@ std::future<PoolAnswers> WorkQueue::post(std::vector<Query> queries, Mode mode, 
   lock.unlock();
   std::shared_ptr<Job> job;
   try {
-    validateAll(queries, mode, scene);
+    requireValid(queries, scene, mode);
     job = jobOf(std::move(queries), mode, std::move(stop), devices_.size());
   } catch (...) {
     lock.lock();

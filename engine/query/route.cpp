@@ -18,4 +18,13 @@ Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise) {
   return query.hits > 1 || scene.moving > 0 ? Route::searchEach : Route::oneSearch;
 }
 
+void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode, bool areRecorded) {
+  for (size_t i = 0; i < queries.size(); ++i) {
+    std::string wrong = validate(queries[i], scene, mode);
+    const char* what = wrong.empty() && areRecorded ? onlyForCpu(queries[i], scene.impl(), false) : nullptr;
+    if (what != nullptr) wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
+    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
+  }
+}
+
 }  // namespace radar

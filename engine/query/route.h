@@ -1,4 +1,4 @@
-// Who may answer a query.
+// Whether a query can be answered, and by whom.
 #pragma once
 
 #include "scene/scene.h"
@@ -16,5 +16,9 @@ enum class Route {
 const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRevise);
 
 Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise);
+
+/// Throws Error, naming the first query that breaks its contract or, if they are recorded, that only the CPU answers.
+void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode = Mode::contact,
+                  bool areRecorded = false);
 
 }  // namespace radar

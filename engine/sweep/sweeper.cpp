@@ -4,6 +4,7 @@
 #include "gpu/api.h"
 #include "math/float_environment.h"
 #include "query/cancelled.h"
+#include "query/route.h"
 #include "scene/scene_copy.h"
 
 namespace radar {
@@ -25,13 +26,6 @@ SampledRunner& Sweeper::Impl::sampled() {
     sampledRunner.emplace(owner, scene, options, *copy);
   }
   return *sampledRunner;
-}
-
-void Sweeper::Impl::validateAll(std::span<const Query> queries, Mode mode) const {
-  for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = validate(queries[i], scene, mode);
-    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
-  }
 }
 
 std::optional<Error> Sweeper::Impl::sync() {
@@ -116,7 +110,7 @@ void Sweeper::sync() {
 Answers Sweeper::run(std::span<const Query> queries, Mode mode, const std::stop_token& stop) {
   const FloatEnvironment floats;
   if (mode == Mode::sampled) impl_->device.requireSampled("run()");
-  impl_->validateAll(queries, mode);
+  requireValid(queries, impl_->scene, mode);
   Flight flight(queries, impl_->options.timestamps, stop);
   impl_->begin(flight, mode);
   impl_->finish(flight);
@@ -126,7 +120,7 @@ Answers Sweeper::run(std::span<const Query> queries, Mode mode, const std::stop_
 Scopes Sweeper::scopes(const Query& query) {
   const FloatEnvironment floats;
   impl_->device.requireSampled("scopes()");
-  impl_->validateAll({&query, 1}, Mode::sampled);
+  requireValid({&query, 1}, impl_->scene, Mode::sampled);
   return impl_->sampled().scopes(query);
 }
 

@@ -8,7 +8,7 @@ namespace radar {
 
 struct Sweeper::Impl {
   /// `copy` may be shared with other instances of the same device, scene and thread; then call sync() after changes of
-  /// the scene, while nothing is running on the device. `needsProof`: see ContactTier.
+  /// the scene, while nothing is running on the device. `needsProof`: see ContactRunner.
   Impl(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
        const SearchRoom& room = {}, bool needsProof = true);
 
@@ -27,7 +27,6 @@ struct Sweeper::Impl {
   template <class Step>
   void attempt(Flight& flight, const Step& step);
 
-  void validateAll(std::span<const Query> queries, Mode mode) const;
   SampledRunner& sampled();
 
   const gpu::Owner owner;

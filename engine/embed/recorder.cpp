@@ -1,20 +1,13 @@
-#include "radar/recorder.h"
+#include "embed/recorder.h"
 
-#include <algorithm>
 #include <limits>
-#include <new>
 
-#include "contact/pass.h"
 #include "embed/capacity.h"
-#include "embed/gather.h"
-#include "embed/host_geometry.h"
-#include "embed/host_queries.h"
-#include "embed/known_recordings.h"
-#include "embed/recorded.h"
 #include "gpu/barrier.h"
 #include "math/float_environment.h"
 #include "query/route.h"
 #include "scene/scene_copy.h"
+#include "sweep/proof.h"
 
 namespace radar {
 
@@ -22,7 +15,6 @@ namespace {
 
 // Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 2;
-constexpr VkDeviceSize kFirstResult = PairSolver::kFirstResult;
 SearchRoom roomFor(const Capacity& capacity, const Device::Impl& device) {
   return {.candidates = capacity.candidates,
           .unresolved = capacity.unresolvedPairs,
@@ -31,75 +23,21 @@ SearchRoom roomFor(const Capacity& capacity, const Device::Impl& device) {
 
 }  // namespace
 
-struct Recorder::Impl {
-  Impl(const Device::Impl& openDevice, const Scene& ownScene, std::shared_ptr<GpuScene> ownCopy, const Capacity& given)
-      : device(openDevice),
-        owner(gpu::Owner::counted(openDevice)),
-        scene(ownScene),
-        capacity(completed(given, openDevice)),
-        copy(std::move(ownCopy)),
-        geometry(owner, *copy),
-        pass(owner, *copy, roomFor(capacity, openDevice)),
-        gathers(owner, capacity.searches),
-        readback(owner, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
-    const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from
-    pass.reserve(capacity.queries + capacity.searches, results, kExcluded * capacity.queries);
-    makeReadback(kFirstResult + results * sizeof(Result));
-  }
-
-  /// Enlarges it; what it has then is of no recording.
-  void makeReadback(VkDeviceSize bytes) {
-    if (readback.reserve(bytes)) new (readback.mapped()) gpu::SearchCounts{};
-  }
-  /// Whether the commands recorded last have not been executed.
-  bool isPending() const { return recorded.isComplete && counts().serial != serial; }
-  void requireExecuted(const char* call) const {
-    if (!isPending()) return;
-    throw Error(std::string(call) +
-                ": the last recording has not been executed: wait for it, or reset() if it never is");
-  }
-  const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
-  /// Of queries, as the device wrote them; of a host's queries, those that count.
-  std::span<const Result> recordedResults() const {
-    const uint32_t count = recorded.isWritten ? std::min(counts().queries, recorded.count) : recorded.count;
-    return {reinterpret_cast<const Result*>(readback.mapped() + kFirstResult), count};
-  }
-  void validateAll(std::span<const Query> queries) const;
-  void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
-  /// What both kinds of record() do before they record.
-  GpuScene::Staged stage(std::span<const Query> queries, const HostGeometry& hostGeometry);
-  GpuScene::Staged stage(const HostQueries& queries, const HostGeometry& hostGeometry);
-  /// The same, on behalf of a call, which an Error that is of the call names first. `queries`: Queries or HostQueries.
-  template <class Queries>
-  GpuScene::Staged stageFor(const char* call, const Queries& queries, const HostGeometry& hostGeometry) {
-    requireExecuted(call);
-    try {
-      return stage(queries, hostGeometry);
-    } catch (const Error& error) {
-      if (error.kind != Error::Kind::call) throw;
-      throw Error(std::string(call) + ": " + error.what());
-    }
-  }
-  void begin(const HostGeometry& hostGeometry);
-  void upload();
-  void recordSearch(VkCommandBuffer commandBuffer, GpuScene::Staged staged);
-  VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
-
-  const Device::Impl& device;
-  const gpu::Owner owner;
-  const Scene& scene;
-  Capacity capacity;
-  std::shared_ptr<GpuScene> copy;
-  bool isShared = false;                                 ///< with other recorders
-  std::shared_ptr<const GpuScene::Buffers> usedBuffers;  ///< by the last recording
-  HostGeometryPass geometry;
-  std::optional<HostQueriesPass> hostQueries;  ///< made when first needed
-  ContactPass pass;
-  GatherPass gathers;
-  gpu::Buffer readback;  ///< counts, then results; then sweeps, if a host's shader wrote the queries
-  Recorded recorded;     ///< the last record()
-  uint32_t serial = 0;   ///< SearchCounts::serial of it
-};
+Recorder::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, std::shared_ptr<GpuScene> ownCopy,
+                     const Capacity& given)
+    : device(openDevice),
+      owner(gpu::Owner::counted(openDevice)),
+      scene(ownScene),
+      capacity(completed(given, openDevice)),
+      copy(std::move(ownCopy)),
+      geometry(owner, *copy),
+      pass(owner, *copy, roomFor(capacity, openDevice)),
+      gathers(owner, capacity.searches),
+      readback(owner, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+  const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from
+  pass.reserve(capacity.queries + capacity.searches, results, kExcluded * capacity.queries);
+  makeReadback(kFirstResult + results * sizeof(Result));
+}
 
 void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   if (queries.size() > capacity.queries) {
@@ -115,10 +53,6 @@ void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry
   if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("geometry: " + wrong);
 }
 
-Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Recorder Recorder::unproved(const Device::Impl& device, const Scene& scene, const Capacity& capacity) {
-  return Recorder(std::make_unique<Impl>(device, scene, std::make_shared<GpuScene>(device), capacity));
-}
 Recorder::Recorder(const Device& device, const Scene& scene, const Capacity& capacity) {
   const FloatEnvironment floats;
   requireRecorderProof(device.impl());
@@ -212,12 +146,12 @@ GpuScene::Staged Recorder::Impl::stage(const HostQueries& queries, const HostGeo
 
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
-  impl_->recordSearch(commands, impl_->stageFor("record", queries, geometry));  // from here on nothing throws
+  impl_->record(commands, queries, geometry);
 }
 
 void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
-  impl_->recordSearch(commands, impl_->stageFor("record", queries, geometry));
+  impl_->record(commands, queries, geometry);
 }
 
 void Recorder::Impl::upload() {
@@ -254,18 +188,20 @@ std::span<const uint32_t> Recorder::hitOffsets() const {
 
 Answers Recorder::read() {
   const FloatEnvironment floats;
-  Impl& self = *impl_;
-  Recorded& recorded = self.recorded;
+  return impl_->read();
+}
+
+Answers Recorder::Impl::read() {
   if (!recorded.isComplete) return {};
-  self.requireExecuted("read");
-  recorded.learn(self.geometry.unboundedBoxes());
-  const std::byte* const mapped = self.readback.mapped();
-  const size_t count = recorded.isWritten ? self.recordedResults().size() : recorded.known.size();
+  requireExecuted("read");
+  recorded.learn(geometry.unboundedBoxes());
+  const std::byte* const mapped = readback.mapped();
+  const size_t count = recorded.isWritten ? recordedResults().size() : recorded.known.size();
   const auto* first = reinterpret_cast<const Result*>(mapped + kFirstResult);
   std::vector<Result> results(first, first + count);
-  const auto pairs = self.pass.unresolved(self.counts());
+  const auto pairs = pass.unresolved(counts());
   if (!recorded.isWritten) return recorded.answers(std::move(results), pairs);
-  const auto* sweeps = reinterpret_cast<const gpu::Sweep*>(mapped + self.firstSweep());
+  const auto* sweeps = reinterpret_cast<const gpu::Sweep*>(mapped + firstSweep());
   return recorded.answersToWritten(std::move(results), pairs, sweeps);
 }
 

@@ -10,7 +10,7 @@
 #include "query/route.h"
 #include "query/swept.h"
 #include "scene/parallel.h"
-#include "sweep/known_answers.h"
+#include "sweep/proof.h"
 
 namespace radar {
 

@@ -10,7 +10,7 @@ namespace radar {
 
 class ContactRunner {
  public:
-  /// `needsProof`: that of the device (known_answers.h), unless isOnCpu().
+  /// `needsProof`: that of the device (sweep/proof.h), unless isOnCpu().
   ContactRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
                 const SearchRoom& room, bool needsProof);
 

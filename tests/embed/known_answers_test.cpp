@@ -1,13 +1,12 @@
 // A device proves itself by known answers: one that computes wrongly, never ends or is lost is refused before it
 // answers.
-#include "sweep/known_answers.h"
+#include "proof/checks.h"
 
 #include <cmath>
 #include <cstring>
 #include <future>
 
-#include "embed/known_recordings.h"
-#include "gpu/device.h"
+#include "proof/known_scene.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/recorder.h"
 #include "support/catch.h"
@@ -92,7 +91,8 @@ TEST_CASE("a device gives known answers of every kind, to the bit") {
 
 TEST_CASE("a device gives known answers in mode contact, whatever the number of its lanes", "[subgroups]") {
   for (uint64_t seed = 0; seed < 2; ++seed) {
-    checkAll(checkSweeper(test::device().impl(), seed, true));
+    checkAll(checkSweeper(test::device().impl(), seed));
+    checkAll({checkClearances(test::device().impl(), seed)});
     checkAll(checkRecorder(test::device().impl(), seed));
   }
 }

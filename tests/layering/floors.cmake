@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # Checks the order of the floors: cmake -DROOT=... -P floors.cmake. Lists name them from low to high. A floor may include
 # itself and the folders in FLOOR_may, which names no higher floor.
-set(engine_floors math exact gpu scene query cpu contact sampled sweep embed pool)
+set(engine_floors math exact gpu scene query cpu contact sampled sweep embed proof pool)
 set(engine_below radar shaders spirv)
 set(math_may radar)
 set(exact_may radar math)
@@ -14,6 +14,7 @@ set(contact_may radar math exact gpu scene query cpu shaders spirv)
 set(sampled_may radar math exact gpu scene query contact shaders spirv)
 set(sweep_may radar math gpu scene query contact cpu sampled shaders)
 set(embed_may radar math gpu scene query cpu contact sweep shaders spirv)
+set(proof_may radar math gpu scene contact sweep embed)
 set(pool_may radar math gpu scene query sweep)
 
 set(tools_floors commit child workloads view import answer batch baselines measure cyber_radar mpi python)

@@ -1,6 +1,6 @@
 // A compiler may take double(float(x)) for x: GCC 12 does with -O2, which this program is compiled with. Then the
 // queries by which a device proves itself are not those that a shader reads as floats.
-#include "sweep/known_answers.h"
+#include "proof/known_scene.h"
 
 #include <algorithm>
 

@@ -162,11 +162,8 @@ class RADAR_API Recorder {
   uint64_t memoryUse() const;
 
   struct Impl;
-  /// For the queries by which a device proves itself.
-  static Recorder unproved(const Device::Impl& device, const Scene& scene, const Capacity& capacity);
 
  private:
-  explicit Recorder(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,10 +1,11 @@
-#include "sweep/difference.h"
-
+// In what a device's answer differs from the CPU's.
 #include <bit>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+
+#include "proof/checks.h"
 
 namespace radar {
 

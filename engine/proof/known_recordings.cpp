@@ -1,15 +1,11 @@
-#include "embed/known_recordings.h"
-
 #include <algorithm>
 #include <cstring>
 
-#include "gpu/buffer.h"
+#include "embed/recorder.h"
 #include "gpu/submission.h"
-#include "math/float_environment.h"
+#include "proof/checks.h"
+#include "proof/known_scene.h"
 #include "radar/cpu_sweeper.h"
-#include "radar/radar.h"
-#include "radar/recorder.h"
-#include "sweep/known_answers.h"
 
 namespace radar {
 
@@ -86,7 +82,7 @@ std::vector<AnswerCheck> checkRecorder(const Device::Impl& device, uint64_t seed
   const HostsScene hosts(device, known);
   constexpr Capacity kRoom{
       .queries = 24, .candidates = 1u << 15, .rounds = 64, .unresolvedPairs = 1u << 13, .searches = 24 * 32};
-  Recorder recorder = Recorder::unproved(device, hosts.scene, kRoom);
+  Recorder::Impl recorder(device, hosts.scene, std::make_shared<GpuScene>(device), kRoom);
   std::vector<Query> queries = known.queries;
   CpuSweeper cpu(known.scene);
   const auto check = [&](const char* kind, const auto& asked) {
@@ -110,35 +106,6 @@ std::vector<AnswerCheck> checkRecorder(const Device::Impl& device, uint64_t seed
   const gpu::Buffer buffer = bufferOf(device, written);
   checks.push_back(check("queries of a host's shaders",
                          HostQueries{.buffer = buffer.get(), .count = static_cast<uint32_t>(written.size())}));
-  return checks;
-}
-
-namespace {
-
-struct RecorderProof {
-  explicit RecorderProof(const Device::Impl& device) {
-    for (uint64_t seed = 0; seed < kProofs; ++seed) {
-      const std::vector<AnswerCheck> some = checkRecorder(device, seed);
-      checks.insert(checks.end(), some.begin(), some.end());
-    }
-  }
-  std::vector<AnswerCheck> checks;
-};
-
-}  // namespace
-
-void requireRecorderProof(const Device::Impl& device) {
-  if (device.host.queue == VK_NULL_HANDLE) return;
-  requireProof(device);
-  requirePassed(device, device.shared<RecorderProof>().checks);
-}
-
-std::vector<AnswerCheck> checkAnswers(const Device& device, uint64_t seed) {
-  const FloatEnvironment floats;
-  device.impl().requireQueue("checkAnswers()");
-  std::vector<AnswerCheck> checks = checkSweeper(device.impl(), seed, true);
-  if (device.supports(Mode::sampled)) checks.push_back(checkSampled(device.impl(), seed));
-  for (const AnswerCheck& check : checkRecorder(device.impl(), seed)) checks.push_back(check);
   return checks;
 }
 

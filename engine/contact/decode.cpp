@@ -4,8 +4,6 @@
 #include <atomic>
 #include <tuple>
 
-#include <vulkan/vulkan_core.h>
-
 #include "cpu/clearance.h"
 #include "cpu/query_search.h"
 #include "exact/blocking.h"

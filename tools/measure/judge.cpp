@@ -108,7 +108,7 @@ void judgeDecision(const Result& result, Verdict& verdict) {
   verdict.set(Fault::normal, !std::isnan(result.normal[0]));
 }
 
-void judgeSampled(const Query& query, const Result& result, const Result& exact, Verdict& verdict) {
+void judgeSampled(const Result& result, const Result& exact, Verdict& verdict) {
   if (result.status == Status::clear) return;
   verdict.set(Fault::bracket, result.lo != 0);
   if (!meets(result)) return verdict.set(Fault::bracket, result.hi != INFINITY);
@@ -188,7 +188,7 @@ Verdict judge(const Scene& scene, const Query& query, Mode mode, const Result& r
     if (query.anyHit) judgeDecision(result, verdict);
     if (!sampled && !query.anyHit) judgeWhole(scene, query, result, exact, unit, verdict);
   }
-  if (sampled) judgeSampled(query, result, exact, verdict);
+  if (sampled) judgeSampled(result, exact, verdict);
   return verdict;
 }
 

@@ -63,7 +63,7 @@ struct Query {
   /// blocks. What every two options mean together is in one table: docs/query-file.md, "Options together".
   double clearance = 0;
   /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
-  /// sensor's box.
+  /// sensor's box, or of the clearance if that is longer.
   std::optional<double> tolerance{};
   /// Mode contact: lists the first contacts with this many nearest objects (Listed::hits), one per object; kAllHits:
   /// with all in reach. 1: no list.

@@ -19,37 +19,29 @@ bool isLeft(const Result& found) {
   return found.flags == Flag::unresolved || found.status == Status::overlap;
 }
 
-}  // namespace
+using Pairs = std::span<const gpu::UnresolvedPair* const>;
 
-UnresolvedPairs::UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs) {
-  ordered_.reserve(pairs.size());
+// By (search, object, triB, triA).
+std::vector<const gpu::UnresolvedPair*> ordered(std::span<const gpu::UnresolvedPair> pairs) {
+  std::vector<const gpu::UnresolvedPair*> all;
+  all.reserve(pairs.size());
   for (const gpu::UnresolvedPair& pair : pairs) {
-    if (pair.sensor != gpu::kNobody) ordered_.push_back(&pair);
+    if (pair.search != gpu::kNobody) all.push_back(&pair);
   }
-  const auto name = [](const gpu::UnresolvedPair* p) { return std::tie(p->sensor, p->object, p->triB, p->triA); };
-  std::sort(ordered_.begin(), ordered_.end(), [&](const auto* p, const auto* q) { return name(p) < name(q); });
+  const auto name = [](const gpu::UnresolvedPair* p) { return std::tie(p->search, p->object, p->triB, p->triA); };
+  std::sort(all.begin(), all.end(), [&](const auto* p, const auto* q) { return name(p) < name(q); });
+  return all;
 }
 
-std::span<const gpu::UnresolvedPair* const> UnresolvedPairs::of(uint32_t sensor, const Result& found) const {
-  if (!isLeft(found)) return {};
-  const auto first =
-      std::partition_point(ordered_.begin(), ordered_.end(), [&](const auto* pair) { return pair->sensor < sensor; });
-  const auto end =
-      std::partition_point(first, ordered_.end(), [&](const auto* pair) { return pair->sensor == sensor; });
-  return {first, end};
-}
-
-std::vector<std::span<const gpu::UnresolvedPair* const>> UnresolvedPairs::bySearch() const {
-  std::vector<std::span<const gpu::UnresolvedPair* const>> parts;
-  for (auto first = ordered_.begin(); first != ordered_.end();) {
-    const auto end = std::find_if(first, ordered_.end(), [&](const auto* p) { return p->sensor != (*first)->sensor; });
+std::vector<Pairs> bySearch(Pairs all) {
+  std::vector<Pairs> parts;
+  for (auto first = all.begin(); first != all.end();) {
+    const auto end = std::find_if(first, all.end(), [&](const auto* p) { return p->search != (*first)->search; });
     parts.emplace_back(first, end);
     first = end;
   }
   return parts;
 }
-
-namespace {
 
 Transform poseOf(const gpu::UnresolvedPair& pair) {
   Transform worldFromObject;
@@ -78,8 +70,8 @@ cpu::PairRule ruleFor(const gpu::UnresolvedPair& pair, const Query& query, std::
 
 // `finder`: as of the CPU's search, about to begin.
 template <class Finder>
-Result decideBy(Finder&& finder, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                const Motion& motion, std::span<const Vector> farthest) {
+Result decideBy(Finder&& finder, Pairs pairs, const Query& query, const Motion& motion,
+                std::span<const Vector> farthest) {
   for (const gpu::UnresolvedPair* pair : pairs) {
     finder.beginObject(ruleFor(*pair, query, farthest), motion);
     finder.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query), 0);
@@ -90,12 +82,10 @@ Result decideBy(Finder&& finder, std::span<const gpu::UnresolvedPair* const> pai
   return result;
 }
 
-}  // namespace
-
-Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        const Motion& motion, double tolerance, std::span<const Vector> farthest) {
+Result decide(const OpenSearch& open, Pairs pairs, std::span<const Vector> farthest) {
+  const auto& [found, query, motion, tolerance] = open;
   if (query.clearance > 0) {
-    Result result = decideBy(cpu::ClearanceContact(query, motion, tolerance), pairs, query, motion, farthest);
+    const Result result = decideBy(cpu::ClearanceContact(query, motion, tolerance), pairs, query, motion, farthest);
     if (result.status != Status::overlap) return result;
     // Only the CPU's search names the nearest pair.
     Result unnamed(Status::overlap);
@@ -111,19 +101,21 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
   return result;
 }
 
+}  // namespace
+
 uint64_t decideAll(std::span<const gpu::UnresolvedPair> pairs, const Deciding& how,
                    const std::function<OpenSearch(uint32_t search, ObjectId object)>& ask) {
-  const UnresolvedPairs unresolved(pairs);
-  const auto searches = unresolved.bySearch();
+  const auto all = ordered(pairs);
+  const std::vector<Pairs> searches = bySearch(all);
   std::atomic<uint64_t> decided = 0;
   parallelFor(searches.size(), 16, how.threads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
       throwIfStopped(how.stop);
-      const auto own = searches[k];
+      const Pairs own = searches[k];
       if (own.size() > how.most) continue;
-      const OpenSearch open = ask(own.front()->sensor, own.front()->object);
+      const OpenSearch open = ask(own.front()->search, own.front()->object);
       if (!isLeft(open.result)) continue;
-      open.result = decideUnresolved(open.result, own, open.query, open.motion, open.tolerance, how.farthest);
+      open.result = decide(open, own, how.farthest);
       decided += own.size();
     }
   });

@@ -17,47 +17,26 @@
 
 namespace radar {
 
-/// The pairs that a device leaves to the CPU, by sensor: those that may be first (all, or none if there was no room),
-/// or that of an overlap, whose point is missing.
-class UnresolvedPairs {
- public:
-  /// `pairs` must outlive this, in place.
-  explicit UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs);
-  /// Ordered by (object, triB, triA). None if `found`, the sensor's answer, stands.
-  std::span<const gpu::UnresolvedPair* const> of(uint32_t sensor, const Result& found) const;
-  /// Those of each search, whether its answer stands or not.
-  std::vector<std::span<const gpu::UnresolvedPair* const>> bySearch() const;
-
- private:
-  std::vector<const gpu::UnresolvedPair*> ordered_;
-};
-
-/// The answer to a query from its device answer `found` and `pairs`, at least one, of UnresolvedPairs.
-/// `motion`: that of the search. For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its
-/// clearance (cpu/clearance.h).
-/// Throws Error (internal) if the search found a certain contact, but none of `pairs` meets. `farthest`:
-/// Mesh::farthest of the meshes that were searched.
-Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        const Motion& motion, double tolerance, std::span<const Vector> farthest);
-
-/// A search that may be left open: what decideUnresolved() needs.
+/// A search that may be left open.
 struct OpenSearch {
-  Result& result;
-  Query query;
-  Motion motion;
-  double tolerance = 0;
+  Result& result;        ///< as the device found it, then decided
+  Query query;           ///< with `anyHit`, any pair that meets decides
+  Motion motion;         ///< of the search
+  double tolerance = 0;  ///< of the query's clearance (cpu/clearance.h)
 };
 
 struct Deciding {
-  std::span<const Vector> farthest;  ///< as of decideUnresolved()
+  std::span<const Vector> farthest = {};  ///< Mesh::farthest of the meshes, if a query ignores what leaves
   size_t most = std::numeric_limits<size_t>::max();
   unsigned threads = 1;
   std::stop_token stop = {};
 };
 
-/// Decides the searches that are left open, in place, but for those with more than `most` pairs. `ask`: of a search,
-/// with the object of one of its pairs; called on several threads. Returns how many pairs were decided. Throws
-/// Cancelled soon after the stop is requested.
+/// Decides the searches that the device left open, in place, but for those with more than `most` pairs. `pairs`: all,
+/// or none if there was no room, that may be first in such a search, and that of an overlap whose point is missing.
+/// `ask`: of a search, with the object of one of its pairs; called on several threads. Returns how many pairs were
+/// decided. Throws Cancelled soon after the stop is requested, and an internal Error if a search found a certain
+/// contact, but none of its pairs meets.
 uint64_t decideAll(std::span<const gpu::UnresolvedPair> pairs, const Deciding& how,
                    const std::function<OpenSearch(uint32_t search, ObjectId object)>& ask);
 

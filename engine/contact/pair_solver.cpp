@@ -39,20 +39,20 @@ PairSolver::PairSolver(const gpu::Owner& owner, GpuScene& scene)
   if (owner.device().doubles) run_.reserve(kPrecise);
 }
 
-void PairSolver::reserve(uint32_t sensors, uint32_t results, uint32_t pairs, uint32_t unresolved) {
+void PairSolver::reserve(uint32_t searches, uint32_t results, uint32_t pairs, uint32_t unresolved) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
   unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
   lists_.counts.reserve(1);
-  lists_.sweeps.reserve(sensors);
-  lists_.states.reserve(sensors);
-  heads_.reserve(sensors);
+  lists_.sweeps.reserve(searches);
+  lists_.states.reserve(searches);
+  heads_.reserve(searches);
   lists_.results.reserve(results);
   lists_.refinedPairs.reserve(pairs);
   unresolved_.reserve(unresolvedRoom_);
 }
 
-void PairSolver::begin(uint32_t sensors, gpu::Upload& upload) {
-  sensorCount_ = sensors;
+void PairSolver::begin(uint32_t searches, gpu::Upload& upload) {
+  searchCount_ = searches;
   gpu::SearchCounts counts{.serial = ++serial_};
   counts.refineGroups[2] = counts.openGroups[2] = 1;
   lists_.counts.reserve(1);
@@ -113,7 +113,7 @@ void PairSolver::record(const gpu::Commands& commands, const OpenStage& stage, c
       if (!device_->doubles) break;
       computeWriteToComputeReadWrite(commands);
     }
-    run_(commands, *shader, gpu::groupsFor(sensorCount_, kContactGroup), ResolvePush{sensorCount_, unresolvedRoom_},
+    run_(commands, *shader, gpu::groupsFor(searchCount_, kContactGroup), ResolvePush{searchCount_, unresolvedRoom_},
          {{kSlotStates, lists_.states},
           {kSlotHeads, heads_},
           {kSlotCounts, lists_.counts},

@@ -20,14 +20,14 @@ class PairSolver {
   /// Every program that one may run on the device.
   static std::vector<gpu::Program> programs(const Device::Impl& device);
 
-  /// Makes room, in `unresolved` at most as the device allows; all of a sensor's unresolved pairs are listed, or none.
-  void reserve(uint32_t sensors, uint32_t results, uint32_t pairs, uint32_t unresolved);
-  /// Begins a recording of so many sensors, and stages its counts.
-  void begin(uint32_t sensors, gpu::Upload& upload);
+  /// Makes room, in `unresolved` at most as the device allows; all of a search's unresolved pairs are listed, or none.
+  void reserve(uint32_t searches, uint32_t results, uint32_t pairs, uint32_t unresolved);
+  /// Begins a recording of so many searches, and stages its counts.
+  void begin(uint32_t searches, gpu::Upload& upload);
 
-  /// Before pairs are proposed: empties the sensors' lists of them.
+  /// Before pairs are proposed: empties the searches' lists of them.
   void recordReset(const gpu::Commands& commands);
-  /// Records the answers from the refined pairs, which are none for sensors whose searches are unfinished. The caller
+  /// Records the answers from the refined pairs, which are none for searches that are unfinished. The caller
   /// records the barriers before and after. `pairs`: an invocation of kContactGroup for each of them. `areCertified`:
   /// certify.comp comes first, and leaves some to refine.comp; else all have been left to it.
   void record(const gpu::Commands& commands, const OpenStage& stage, const gpu::Groups& pairs, bool areCertified,
@@ -57,7 +57,7 @@ class PairSolver {
   Lists lists_;
   gpu::Array<uint32_t> heads_;
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
-  uint32_t sensorCount_ = 0, unresolvedRoom_ = 0, serial_ = 0;
+  uint32_t searchCount_ = 0, unresolvedRoom_ = 0, serial_ = 0;
 };
 
 }  // namespace radar

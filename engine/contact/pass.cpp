@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <thread>
 
-#include "gpu/barrier.h"
 #include "gpu/api.h"
+#include "gpu/barrier.h"
 #include "gpu/requirements.h"
 #include "spirv/radar_shaders.h"
 
@@ -26,10 +26,10 @@ constexpr uint32_t kLanes = 8, kLeastLanes = 1u << 10, kMostLanes = 1u << 14, kM
 constexpr uint32_t kLeastGroup = 16;
 // Capacity for candidates, of 24 bytes and 64 as refined pairs, that lists grow to.
 constexpr uint32_t kMostCandidates = 1u << 22;
-// Capacity for unresolved pairs, of 192 bytes: at first per sensor, and at most in total.
+// Capacity for unresolved pairs, of 192 bytes: at first per search, and at most in total.
 constexpr uint32_t kUnresolved = 4, kUnresolvedWithClearance = 16, kMostUnresolved = 1u << 20;
 
-// Kernels bind no more than that; all other lists are bounded by their capacities or by those of sensors.
+// Kernels bind no more than that; all other lists are bounded by their capacities or by those of searches.
 void checkExcluded(const Device::Impl& device, uint64_t count) {
   const uint64_t bytes = count * sizeof(uint32_t), limit = device.properties.limits.maxStorageBufferRange;
   if (bytes <= limit) return;
@@ -80,53 +80,54 @@ ContactPass::ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchR
   if (room_.budget == 0) room_.budget = kMostBudget;
 }
 
-uint32_t ContactPass::groupsFor(uint32_t sensors) const {
+uint32_t ContactPass::groupsFor(uint32_t searches) const {
   if (room_.groups != 0) return room_.groups;
-  if (device_->runsOnCpu()) return std::max(32u, sensors / 256);
+  if (device_->runsOnCpu()) return std::max(32u, searches / 256);
   const uint64_t lanes =
-      std::max<uint64_t>(std::clamp(uint64_t{kLanes} * sensors, uint64_t{kLeastLanes}, uint64_t{kMostLanes}),
-                         std::min(sensors / 4, kMostOfAll));
+      std::max<uint64_t>(std::clamp(uint64_t{kLanes} * searches, uint64_t{kLeastLanes}, uint64_t{kMostLanes}),
+                         std::min(searches / 4, kMostOfAll));
   return static_cast<uint32_t>(lanes / std::max(device_->subgroupSize, kLeastGroup));
 }
 
-uint32_t ContactPass::widthFor(uint32_t sensors) const {
+uint32_t ContactPass::widthFor(uint32_t searches) const {
   if (room_.width != 0) return room_.width;
   // On the CPU, as many lanes are at work as threads times the width of a vector.
-  const uint32_t groups = device_->runsOnCpu() ? std::max(1u, std::thread::hardware_concurrency()) : groupsFor(sensors);
+  const uint32_t groups =
+      device_->runsOnCpu() ? std::max(1u, std::thread::hardware_concurrency()) : groupsFor(searches);
   return 2 * groups * device_->subgroupSize;
 }
 
-void ContactPass::reserveLists(uint32_t sensors, uint32_t results) {
+void ContactPass::reserveLists(uint32_t searches, uint32_t results) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
-  const uint64_t all = uint64_t{groupsFor(sensors)} * device_->subgroupSize * (search_.constants[2] + 1);
-  const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, uint64_t{kMostTasks} + sensors);
+  const uint64_t all = uint64_t{groupsFor(searches)} * device_->subgroupSize * (search_.constants[2] + 1);
+  const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, uint64_t{kMostTasks} + searches);
   const uint64_t candidates =
-      room_.candidates != 0 ? room_.candidates : std::max<uint64_t>(usualCandidates(sensors), wantedCandidates_);
-  const uint32_t usual = (hasClearances_ ? kUnresolvedWithClearance : kUnresolved) * sensors;
+      room_.candidates != 0 ? room_.candidates : std::max<uint64_t>(usualCandidates(searches), wantedCandidates_);
+  const uint32_t usual = (hasClearances_ ? kUnresolvedWithClearance : kUnresolved) * searches;
   const uint32_t unresolved =
       room_.unresolved != 0 ? room_.unresolved : std::clamp(std::max(usual, wantedUnresolved_), 4096u, kMostUnresolved);
-  taskRoom_ = static_cast<uint32_t>(std::min(sensors + tasks, limit / sizeof(gpu::SearchTask)));
+  taskRoom_ = static_cast<uint32_t>(std::min(searches + tasks, limit / sizeof(gpu::SearchTask)));
   candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::RefinedPair)));
   tasks_.reserve(taskRoom_);
   spilled_.reserve(taskRoom_);
-  queues_.reserve(groupsFor(sensors) * 2 * search_.constants[1]);
+  queues_.reserve(groupsFor(searches) * 2 * search_.constants[1]);
   candidates_.reserve(candidateRoom_);
-  solver_.reserve(sensors, results, candidateRoom_, unresolved);
+  solver_.reserve(searches, results, candidateRoom_, unresolved);
 }
 
-void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded) {
-  stated_.reserve(sensors);
-  sensors_.reserve(sensors);
+void ContactPass::reserve(uint32_t searches, uint32_t results, uint32_t excluded) {
+  stated_.reserve(searches);
+  sensors_.reserve(searches);
   excluded_.reserve(excluded);
-  reserveLists(sensors, results);
-  constexpr size_t kPerSensor = sizeof(gpu::StatedSearch) + sizeof(gpu::Sweep);
-  upload_.reserve(sensors * kPerSensor + excluded * sizeof(uint32_t) + results * sizeof(Result) +
+  reserveLists(searches, results);
+  constexpr size_t kPerSearch = sizeof(gpu::StatedSearch) + sizeof(gpu::Sweep);
+  upload_.reserve(searches * kPerSearch + excluded * sizeof(uint32_t) + results * sizeof(Result) +
                   sizeof(gpu::SearchCounts) + 5 * 8);  // each of five pieces may be rounded up
 }
 
 // Begins an upload with the changes of the scene and the counts of a search without tasks.
 GpuScene::Staged ContactPass::beginStaging(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next) {
-  sensorCount_ = searches;
+  searchCount_ = searches;
   encoding_ = {.count = searches};
   setAnchor(encoding_, scene.objectTree());
   upload_.begin();
@@ -145,7 +146,7 @@ GpuScene::Staged ContactPass::stage(const SearchPlan& batch, std::span<const Res
   checkExcluded(*device_, batch.excluded.size());
   GpuScene::Staged staged = beginStaging(batch.count(), scene, std::move(next));
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.stated.size()));
-  reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
+  reserve(searchCount_, results, static_cast<uint32_t>(batch.excluded.size()));
   upload_.add(batch.stated.data(), bytesOf(batch.stated), stated_);
   upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), solver_.lists().sweeps);
   upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
@@ -181,7 +182,7 @@ void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& s
 void ContactPass::recordEncoding(const gpu::Commands& commands, const OpenStage& stage) {
   using namespace gpu;  // the slots
   stage("encode");
-  run_(commands, shaders::kEncode, gpu::groupsFor(sensorCount_, kContactGroup), encoding_,
+  run_(commands, shaders::kEncode, gpu::groupsFor(searchCount_, kContactGroup), encoding_,
        {{kSlotMeshes, scene_.buffers().meshes},
         {kSlotObjectNodes, scene_.buffers().objectNodes},
         {kSlotStated, stated_},
@@ -200,8 +201,8 @@ void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, boo
   // What is waiting when the budget ends takes more iterations then.
   const uint32_t budget = hasClearances_ ? std::max(room_.budget / 2, 1u) : room_.budget;
   const Array<SearchTask>&from = round % 2 == 0 ? tasks_ : spilled_, &to = round % 2 == 0 ? spilled_ : tasks_;
-  run_(commands, hasClearances_ ? searchWithClearance_ : search_, groupsFor(sensorCount_),
-       SearchPush{round, taskRoom_, candidateRoom_, budget, widthFor(sensorCount_)},
+  run_(commands, hasClearances_ ? searchWithClearance_ : search_, groupsFor(searchCount_),
+       SearchPush{round, taskRoom_, candidateRoom_, budget, widthFor(searchCount_)},
        {{kSlotMeshNodes, scene.meshNodes},
         {kSlotObjectNodes, scene.objectNodes},
         {kSlotVertices, scene.vertices},
@@ -225,7 +226,7 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
   using namespace gpu;  // the slots
   const PairSolver::Lists& lists = solver_.lists();
   rounds_ = rounds;
-  if (sensorCount_ == 0) return;
+  if (searchCount_ == 0) return;
   stage("search");
   for (uint32_t round = 0; round < rounds; ++round) recordRound(commands, round, isLast && round + 1 == rounds);
   stage("solve");

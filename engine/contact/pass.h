@@ -13,9 +13,9 @@ namespace radar {
 /// Capacities of a search's lists and workgroups, and its division into dispatches. Zero: chosen for the device and the
 /// batch.
 struct SearchRoom {
-  uint32_t tasks = 0;       ///< in addition to one per sensor
-  uint32_t candidates = 0;  ///< for all sensors together
-  uint32_t unresolved = 0;  ///< unresolved pairs; all of a sensor's pairs are listed, or none
+  uint32_t tasks = 0;       ///< in addition to one per search
+  uint32_t candidates = 0;  ///< for all searches together
+  uint32_t unresolved = 0;  ///< unresolved pairs; all of a search's pairs are listed, or none
   uint32_t groups = 0;      ///< workgroups per round
   uint32_t budget = 0;      ///< iterations of a workgroup per round
   uint32_t width = 0;       ///< below this number, tasks are split early
@@ -26,7 +26,7 @@ struct SearchRoom {
   std::function<std::chrono::steady_clock::time_point()> now;
 };
 
-/// Candidates for which there is room unless told otherwise: see Capacity. Sensors have some 10 among boxes, 30 among
+/// Candidates for which there is room unless told otherwise: see Capacity. Searches have some 10 among boxes, 30 among
 /// meshes, hundreds where shapes interlock.
 uint64_t usualCandidates(uint64_t searches);
 
@@ -34,9 +34,9 @@ class ContactPass {
  public:
   ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchRoom& room);
 
-  /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size,
+  /// Makes room for this many searches and known answers; stage() then allocates nothing for batches up to this size,
   /// but for changes of the scene.
-  void reserve(uint32_t sensors, uint32_t results, uint32_t excluded);
+  void reserve(uint32_t searches, uint32_t results, uint32_t excluded);
   /// Makes room for the batch, and stages it with the changes of the scene. `known`: answers that need no search; if
   /// given, they include placeholders for those of the batch. `next`: see GpuScene::stage. The device is idle.
   GpuScene::Staged stage(const SearchPlan& batch, std::span<const Result> known, const Scene::Impl& scene,
@@ -80,7 +80,7 @@ class ContactPass {
   std::span<const gpu::UnresolvedPair> unresolved(const gpu::SearchCounts& counts) const {
     return solver_.unresolved(counts);
   }
-  uint32_t sensorCount() const { return sensorCount_; }
+  uint32_t searchCount() const { return searchCount_; }
   /// SearchCounts::serial of what was staged last.
   uint32_t serial() const { return solver_.serial(); }
   /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.
@@ -94,9 +94,9 @@ class ContactPass {
  private:
   GpuScene::Staged beginStaging(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next);
   void recordRound(const gpu::Commands& commands, uint32_t round, bool isLast);
-  void reserveLists(uint32_t sensors, uint32_t results);
-  uint32_t groupsFor(uint32_t sensors) const;
-  uint32_t widthFor(uint32_t sensors) const;
+  void reserveLists(uint32_t searches, uint32_t results);
+  uint32_t groupsFor(uint32_t searches) const;
+  uint32_t widthFor(uint32_t searches) const;
 
   const Device::Impl* device_;
   GpuScene& scene_;
@@ -114,7 +114,7 @@ class ContactPass {
   gpu::EncodePush encoding_{};
   uint32_t taskRoom_ = 0, candidateRoom_ = 0;
   bool ignoresLeaving_ = false, hasClearances_ = false;
-  uint32_t sensorCount_ = 0, rounds_ = 0, wantedCandidates_ = 0, wantedUnresolved_ = 0;
+  uint32_t searchCount_ = 0, rounds_ = 0, wantedCandidates_ = 0, wantedUnresolved_ = 0;
 };
 
 }  // namespace radar

@@ -65,7 +65,7 @@ void ContactSubmitter::recordAndSubmit() {
   gpu::computeWriteToCopy(commands);
   stage("readback");
   const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
-  const VkBufferCopy results{0, PairSolver::kFirstResult, pass_.sensorCount() * sizeof(Result)};
+  const VkBufferCopy results{0, PairSolver::kFirstResult, pass_.searchCount() * sizeof(Result)};
   commands->CmdCopyBuffer(commands, pass_.counts().get(), readback_.get(), 1, &counts);
   commands->CmdCopyBuffer(commands, pass_.results().get(), readback_.get(), 1, &results);
   gpu::writtenToHost(commands);
@@ -101,7 +101,7 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages, const st
   const gpu::SearchCounts& all = counts();
   if (all.broken != 0) throw Error(wordsFor(all.broken), VK_ERROR_DEVICE_LOST);
   const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + PairSolver::kFirstResult);
-  return {{results, pass_.sensorCount()},
+  return {{results, pass_.searchCount()},
           pass_.unresolved(all),
           pass_.learn(all),
           joined(all.trianglePairs, all.trianglePairsHigh)};

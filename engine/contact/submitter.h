@@ -10,7 +10,7 @@ namespace radar {
 
 /// The device's answers to a batch; valid until the next submit().
 struct SearchAnswers {
-  std::span<const Result> results;  ///< one per sensor
+  std::span<const Result> results;  ///< one per search
   std::span<const gpu::UnresolvedPair> unresolved;
   bool roomier = false;        ///< this batch had too little room for candidates; the next one has more
   uint64_t trianglePairs = 0;  ///< tested

@@ -1,5 +1,7 @@
 #include "sampled/decode.h"
 
+#include "radar/error.h"
+
 namespace radar {
 
 Result decodeClear() {
@@ -9,10 +11,9 @@ Result decodeClear() {
   return result;
 }
 
-Result decodeSampled(const gpu::Answer& answer, const Result& contact, std::span<const gpu::UnresolvedPair* const> open,
-                     const Query& query, uint32_t resolution) {
+Result decodeSampled(const gpu::Answer& answer, const Result& contact, const Query& query, uint32_t resolution) {
   if (contact.status == Status::invalid) throw Error(Error::Kind::internal, "mode sampled lost a certain contact");
-  Result result = open.empty() ? contact : decideUnresolved(contact, open, query, Motion(query), 0, {});
+  Result result = contact;
   // That no proposed pair meets proves nothing.
   if (result.status == Status::clear) result = Result(Status::undecided);
   result.lo = 0;

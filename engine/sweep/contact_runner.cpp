@@ -16,18 +16,18 @@ namespace radar {
 
 namespace {
 
-// Sensors of one submission, at most: what a device has in hand while the next ones are planned.
-constexpr size_t kMostSensors = 1u << 14;
+// Searches of one submission, at most: what a device has in hand while the next ones are planned.
+constexpr size_t kMostSearches = 1u << 14;
 // Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
 // the batch (docs/performance.md). On another, a submission takes the time in which a CPU answers some queries: an
 // estimate, as no such device has been measured.
 constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
-// Pairs that are left to the host: more of one sensor are dearer to decide than to search again.
+// Pairs that are left to the host: more of one search are dearer to decide than to search again.
 constexpr size_t kMostDecided = 256;
 
-// Of one submission: what a texel buffer of sensors holds.
-size_t mostSensorsOf(const Device::Impl& device) {
-  return std::min<size_t>(kMostSensors, device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
+// Of one submission: what a texel buffer of their sensors holds.
+size_t mostSearchesOf(const Device::Impl& device) {
+  return std::min<size_t>(kMostSearches, device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
 }
 
 uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
@@ -45,7 +45,7 @@ ContactRunner::ContactRunner(const gpu::Owner& owner, const Scene& scene, const 
       options_(options),
       resident_(resident),
       room_(room),
-      mostSensors_(mostSensorsOf(owner)) {
+      mostSearches_(mostSearchesOf(owner)) {
   if (needsProof && !isOnCpu()) requireProof(owner);
 }
 
@@ -104,8 +104,8 @@ bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tr
   if (route == Route::cpu || !tree.inRange()) return false;
   std::vector<ObjectId> objects{kNone};
   if (route == Route::searchEach) objects = inReach(asked, scene, tree);
-  if (objects.size() > mostSensors_) return false;
-  if (flight.planned.count() + objects.size() > mostSensors_) submit(flight);
+  if (objects.size() > mostSearches_) return false;
+  if (flight.planned.count() + objects.size() > mostSearches_) submit(flight);
   SearchPlan& searches = flight.planned;
   const uint32_t first = searches.count();
   for (const ObjectId object : objects) {

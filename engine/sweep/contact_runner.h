@@ -43,7 +43,7 @@ class ContactRunner {
   const SweeperOptions options_;
   GpuScene& resident_;
   const SearchRoom room_;
-  const size_t mostSensors_;                   ///< per submission
+  const size_t mostSearches_;                  ///< per submission
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   cpu::Search cpu_;
   std::string lost_;  ///< as SweepStats::lost

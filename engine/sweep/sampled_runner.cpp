@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "contact/decode.h"
 #include "gpu/api.h"
 #include "query/cancelled.h"
 #include "sampled/decode.h"
@@ -94,12 +95,14 @@ void SampledRunner::finish(Flight& flight) {
   try {
     const SampledAnswers found = submitter_.collect(drawn_, answers.stats.stages);
     flight.deviceDone = Clock::now();
-    const UnresolvedPairs unresolved(found.unresolved);
+    std::vector<Result> contacts(found.contacts.begin(), found.contacts.end());
+    answers.stats.cpuPairs += decideAll(found.unresolved, {}, [&](uint32_t i, ObjectId) {
+      const Query& query = flight.queries[queries[i]];
+      return OpenSearch{contacts[i], query, Motion(query)};
+    });
     for (uint32_t i = 0; i < queries.size(); ++i) {
-      const auto open = unresolved.of(i, found.contacts[i]);
-      answers.results[queries[i]] = decodeSampled(found.answers[i], found.contacts[i], open, flight.queries[queries[i]],
-                                                  drawn_.views[i].resolution);
-      answers.stats.cpuPairs += open.size();
+      answers.results[queries[i]] =
+          decodeSampled(found.answers[i], contacts[i], flight.queries[queries[i]], drawn_.views[i].resolution);
     }
     answers.stats.pairs += found.pairs;
     flight.addCpuTime("decode", msSince(flight.deviceDone));
@@ -178,10 +181,10 @@ Scopes SampledRunner::scopes(const Query& query) {
   const SampledAnswers found = submitter_.collect(drawn_, stats.stages, &stored);
 
   Scopes out;
-  out.result = plan.inReach.empty() ? decodeClear()
-                                    : decodeSampled(found.answers[0], found.contacts[0],
-                                                    UnresolvedPairs(found.unresolved).of(0, found.contacts[0]), query,
-                                                    plan.view.resolution);
+  Result contact = found.contacts[0];
+  decideAll(found.unresolved, {}, [&](uint32_t, ObjectId) { return OpenSearch{contact, query, Motion(query)}; });
+  out.result =
+      plan.inReach.empty() ? decodeClear() : decodeSampled(found.answers[0], contact, query, plan.view.resolution);
   out.width = plan.view.width;
   out.height = plan.view.height;
   out.pixel = plan.pixel;

@@ -46,7 +46,7 @@ uint reserveUnresolved(uint pairs) {
   // The sum cannot wrap: it is at most twice the number of refined pairs.
   const uint at = atomicAdd(counts.unresolved, pairs), end = at + pairs;
   if (end <= push.unresolvedCapacity) return at;
-  for (uint i = at; i < push.unresolvedCapacity; ++i) unresolved[i].sensor = kNobody;
+  for (uint i = at; i < push.unresolvedCapacity; ++i) unresolved[i].search = kNobody;
   return kNobody;
 }
 

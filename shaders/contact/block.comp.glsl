@@ -242,20 +242,20 @@ void main() {
   if (place >= counts.openPairs) return;
   const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
-  if (sweeps[c.sensor].ignoreLeaving == 0 || (c.flags & kPairBlocks) != 0) return;
-  const float hi = uintBitsToFloat(states[c.sensor].hi);
+  if (sweeps[c.search].ignoreLeaving == 0 || (c.flags & kPairBlocks) != 0) return;
+  const float hi = uintBitsToFloat(states[c.search].hi);
   if (c.first > hi) return;
   dvec3 a[3], b[3];
-  cornersInOrder(sweeps[c.sensor].pose, c.slotA, a);
+  cornersInOrder(sweeps[c.search].pose, c.slotA, a);
   cornersInOrder(objects[c.object].pose, c.slotB, b);
   setCorners(a, b);
-  const double way[3] = sweeps[c.sensor].direction;
-  direction = exactly(dvec3(way[0], way[1], way[2]) * (isAtRest(sweeps[c.sensor]) ? 0.0LF : 1.0LF));
-  slack = slackOf(sweeps[c.sensor], c);
+  const double way[3] = sweeps[c.search].direction;
+  direction = exactly(dvec3(way[0], way[1], way[2]) * (isAtRest(sweeps[c.search]) ? 0.0LF : 1.0LF));
+  slack = slackOf(sweeps[c.search], c);
   // Too late, or never because it has parted.
-  const bool isLate = scaledDown(c.low, sweeps[c.sensor]) > hi;
+  const bool isLate = scaledDown(c.low, sweeps[c.search]) > hi;
   bool mayBePressed;
-  const int answer = blocks(sweeps[c.sensor], objects[c.object].pose, isLate, mayBePressed);
+  const int answer = blocks(sweeps[c.search], objects[c.object].pose, isLate, mayBePressed);
   if (answer == kNo) {
     refinedPairs[i].low = kNever;
     refinedPairs[i].first = 1e38;
@@ -271,5 +271,5 @@ void main() {
   } else if (mayBePressed) {
     refinedPairs[i].flags &= ~kPairSharp;
   }
-  if (meets || touches) lowerHi(c.sensor, sweeps[c.sensor], touches ? 0.0LF : c.at + c.error);
+  if (meets || touches) lowerHi(c.search, sweeps[c.search], touches ? 0.0LF : c.at + c.error);
 }

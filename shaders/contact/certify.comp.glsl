@@ -80,7 +80,7 @@ void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (i >= counts.refinedPairs) return;
   const RefinedPair c = refinedPairs[i];
-  const Sweep sweep = sweeps[c.sensor];
+  const Sweep sweep = sweeps[c.search];
   if (sweep.cpuDecides != 0) return;
   bool certain = false;
   if (c.feature < kFeatures && sweep.ignoreLeaving == 0) {
@@ -99,7 +99,7 @@ void main() {
       refinedPairs[i].error = at.error;
       refinedPairs[i].flags = kPairMeets | kPairSharp | feature;
       refinedPairs[i].first = max(c.first, scaledDown(low, sweep));
-      lowerHi(c.sensor, sweep, at.value + at.error);
+      lowerHi(c.search, sweep, at.value + at.error);
     }
   }
   if (!certain) leaveToRefine(i);

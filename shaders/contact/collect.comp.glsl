@@ -22,14 +22,14 @@ void main() {
   const uint me = gl_GlobalInvocationID.x;
   const uint step = kContactGroup * kCollectGroups;
   if (push.isLast != 0) {
-    for (uint i = me; i < left; i += step) atomicOr(states[tasks[taken + i].sensor].flags, kSearchUnfinished);
-    for (uint i = me; i < kept; i += step) atomicOr(states[spilled[i].sensor].flags, kSearchUnfinished);
+    for (uint i = me; i < left; i += step) atomicOr(states[tasks[taken + i].search].flags, kSearchUnfinished);
+    for (uint i = me; i < kept; i += step) atomicOr(states[spilled[i].search].flags, kSearchUnfinished);
   } else {
     for (uint i = me; i < left; i += step) {
       if (kept + i < push.taskCapacity) {
         spilled[kept + i] = tasks[taken + i];
       } else {
-        atomicOr(states[tasks[taken + i].sensor].flags, kSearchLost);
+        atomicOr(states[tasks[taken + i].search].flags, kSearchLost);
       }
     }
   }

@@ -20,7 +20,7 @@ void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (i >= min(counts.candidates, push.candidateCapacity)) return;
   const CandidatePair c = candidates[i];
-  if (c.low > uintBitsToFloat(states[c.sensor].hi) || c.object > states[c.sensor].least) return;
-  refinedPairs[atomicAdd(counts.refinedPairs, 1)] = RefinedPair(doubleBits(floatBitsToUint(c.low)), uvec2(0), uvec2(0), c.sensor,
+  if (c.low > uintBitsToFloat(states[c.search].hi) || c.object > states[c.search].least) return;
+  refinedPairs[atomicAdd(counts.refinedPairs, 1)] = RefinedPair(doubleBits(floatBitsToUint(c.low)), uvec2(0), uvec2(0), c.search,
                                                           c.object, c.slotA, c.slotB, 0, kNobody, c.low, 0, 0, c.feature);
 }

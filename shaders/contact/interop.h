@@ -91,7 +91,7 @@ INTEROP_CONST kSearchNoQuery = 16;    // a host's shader has written no valid qu
 
 // A pair of nodes, or a node of the tree over objects, still to be searched.
 struct SearchTask {
-  uint sensor;
+  uint search;
   uint object;  // kNobody: `b` is a link of the tree over objects
   uint a;       // a node of the sensor's mesh; or, with kLinkLeaf, the left of two children to try
   uint b;       // a node of the object's mesh; or, without kLinkLeaf in `a`, the left of two children to try
@@ -100,13 +100,13 @@ struct SearchTask {
 
 // An entry of a workgroup's queues: a pair of leaves, whose links `a` and `b` are; or of triangles, whose slots they are.
 struct QueuedPair {
-  Quadruple pair;  // a, b, object, sensor
+  Quadruple pair;  // a, b, object, search
   float gap;       // of leaves: no contact before this, scaled
 };
 
 // A pair of triangles that may be first, according to floats.
 struct CandidatePair {
-  uint sensor;
+  uint search;
   uint object;
   uint slotA;  // Triangle
   uint slotB;
@@ -119,7 +119,7 @@ struct RefinedPair {
   double low;    // no contact before this
   double at;     // contact of the certain feature, in multiples of the direction, and its error bound;
   double error;  // only if kPairMeets
-  uint sensor;
+  uint search;
   uint object;
   uint slotA;
   uint slotB;
@@ -127,7 +127,7 @@ struct RefinedPair {
   uint next;
   float first;   // `low`, scaled, rounded down
   uint open;     // no property of this pair, but an entry of a list: an index of a pair that may not block, or not meet as it seems
-  uint left;     // likewise of one that certify.comp leaves; at last, of a sensor's first pair: that which describe.comp
+  uint left;     // likewise of one that certify.comp leaves; at last, of a search's first pair: that which describe.comp
                  // describes, or kNobody
   uint feature;  // of a CandidatePair
 };
@@ -140,7 +140,7 @@ INTEROP_CONST kPairSharp = 0x100;    // certainly begins at `at`, no earlier
 
 // A pair that the device leaves to the CPU: its ids, its corners in the order of their meshes, and the object's pose.
 struct UnresolvedPair {
-  uint sensor;
+  uint search;
   uint object;
   uint triB;
   uint triA;

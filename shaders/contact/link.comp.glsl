@@ -15,6 +15,6 @@ layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { Refin
 
 void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
-  if (i >= counts.refinedPairs || refinedPairs[i].first > uintBitsToFloat(states[refinedPairs[i].sensor].hi)) return;
-  refinedPairs[i].next = atomicExchange(heads[refinedPairs[i].sensor], i);
+  if (i >= counts.refinedPairs || refinedPairs[i].first > uintBitsToFloat(states[refinedPairs[i].search].hi)) return;
+  refinedPairs[i].next = atomicExchange(heads[refinedPairs[i].search], i);
 }

@@ -49,15 +49,15 @@ void main() {
   if (place >= counts.openPairs) return;
   const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
-  if (sweeps[c.sensor].ignoreLeaving == 0) return;
+  if (sweeps[c.search].ignoreLeaving == 0) return;
   const double last = c.at + c.error;
-  if ((c.flags & kPairMeets) == 0 || c.at <= c.error || !wouldLowerHi(c.sensor, sweeps[c.sensor], last)) return;
+  if ((c.flags & kPairMeets) == 0 || c.at <= c.error || !wouldLowerHi(c.search, sweeps[c.search], last)) return;
   dvec3 a[3], b[3];
-  placedCorners(sweeps[c.sensor].pose, c.slotA, a);
+  placedCorners(sweeps[c.search].pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);
-  const Bounded slack = slackOf(sweeps[c.sensor], c);
-  const double direction[3] = sweeps[c.sensor].direction;
+  const Bounded slack = slackOf(sweeps[c.search], c);
+  const double direction[3] = sweeps[c.search].direction;
   if (!certainlyBlocks(c.flags & 0xffu, a, b, dvec3(direction[0], direction[1], direction[2]), slack.value + slack.error)) return;
   refinedPairs[i].flags = c.flags | kPairBlocks;
-  lowerHi(c.sensor, sweeps[c.sensor], last);
+  lowerHi(c.search, sweeps[c.search], last);
 }

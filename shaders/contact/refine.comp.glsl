@@ -17,7 +17,7 @@ void main() {
   const uint place = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (place >= counts.leftPairs) return;
   const uint i = refinedPairs[place].left;
-  const uint sensor = refinedPairs[i].sensor;
+  const uint sensor = refinedPairs[i].search;
   const double direction[3] = sweeps[sensor].direction;
   dvec3 a[3], b[3];
   placedCorners(sweeps[sensor].pose, refinedPairs[i].slotA, a);

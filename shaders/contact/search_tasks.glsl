@@ -22,7 +22,7 @@ bool isIdle() { return current.x == kNobody && depth == 0; }
 
 // Begins a task; returns its object, or kNobody if it is a node of the tree over objects or no longer counts.
 uint begin(SearchTask task) {
-  sensor = task.sensor;
+  sensor = task.search;
   const SearchState state = states[sensor];
   if (task.gap > limitOf(sensor, state) || (task.object != kNobody && task.object > state.least)) return kNobody;
   if (task.object == kNobody) {

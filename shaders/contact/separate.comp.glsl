@@ -92,20 +92,20 @@ void main() {
   if (place >= counts.openPairs) return;
   const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
-  if (sweeps[c.sensor].ignoreLeaving != 0) return;
-  const double way[3] = sweeps[c.sensor].direction;
+  if (sweeps[c.search].ignoreLeaving != 0) return;
+  const double way[3] = sweeps[c.search].direction;
   direction = dvec3(way[0], way[1], way[2]);
   dvec3 a[3], b[3];
-  placedCorners(sweeps[c.sensor].pose, c.slotA, a);
+  placedCorners(sweeps[c.search].pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);
   setCorners(a, b);
-  const double low = max(c.low, entryOf() * sweeps[c.sensor].directionLength * (1.0LF - kRounded));
+  const double low = max(c.low, entryOf() * sweeps[c.search].directionLength * (1.0LF - kRounded));
   refinedPairs[i].low = low;
-  refinedPairs[i].first = max(c.first, scaledDown(low, sweeps[c.sensor]));
+  refinedPairs[i].first = max(c.first, scaledDown(low, sweeps[c.search]));
   Bounded amid;
   if ((c.flags & kPairMeets) != 0 || !meetsAmid(c.flags >> kPairCorners, amid) || amid.value < amid.error) return;
   refinedPairs[i].at = amid.value;
   refinedPairs[i].error = amid.error;
   refinedPairs[i].flags = c.flags | kPairMeets;
-  lowerHi(c.sensor, sweeps[c.sensor], amid.value + amid.error);
+  lowerHi(c.search, sweeps[c.search], amid.value + amid.error);
 }

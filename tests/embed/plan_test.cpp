@@ -217,7 +217,7 @@ TEST_CASE(
   REQUIRE(planned.tasks.size() == tasks);
   std::vector<uint32_t> seen(written.size());
   for (const gpu::SearchTask& task : planned.tasks) {
-    CHECK(++seen.at(task.sensor) == 1);
+    CHECK(++seen.at(task.search) == 1);
     CHECK(task.object == gpu::kNobody);
     CHECK(task.b == tree.nodes()[0].link);
     CHECK(task.gap == 0);

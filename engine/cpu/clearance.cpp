@@ -11,7 +11,7 @@ namespace radar::cpu {
 
 namespace {
 
-// Of the sensor's size: the longest side of its box, or of a ball or a thin capsule the clearance.
+// Of the longest side of the sensor's box, or of the clearance.
 constexpr double kTolerance = 1e-6;
 
 void setSeparation(Result& result, const Separation& separation) {
@@ -27,9 +27,10 @@ void setSeparation(Result& result, const Separation& separation) {
 double toleranceOf(const Query& query, const Mesh& sensor) {
   if (query.clearance == 0) return 0;
   const Box box = boxOf(sensor, query.worldFromMesh.m);
-  const double usual =
-      kTolerance * std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2], query.clearance});
-  return std::min(query.tolerance.value_or(usual), usual);
+  const double side = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+  // Without a wish, a ball's is as narrow as rounding allows.
+  if (!query.tolerance) return kTolerance * side;
+  return std::min(*query.tolerance, kTolerance * std::max(side, query.clearance));
 }
 
 ClearanceContact::ClearanceContact(const Query& query, const Motion& motion, double tolerance)

@@ -12,9 +12,9 @@
 
 namespace radar::cpu {
 
-/// How narrow the bracket of a query with a clearance is to be, world units: Query::tolerance, or by default a share of
-/// the longest side of the sensor's box, or of the clearance if that is longer. A larger one would save next to nothing.
-/// Without a clearance: 0.
+/// How narrow the bracket of a query with a clearance is to be, world units: Query::tolerance, at most a share of the
+/// longest side of the sensor's box, or of the clearance if that is longer; larger ones would save next to nothing. By
+/// default the share of the side. Without a clearance: 0.
 double toleranceOf(const Query& query, const Mesh& sensor);
 
 /// The answer does not depend on the order of the pairs, nor on those that come later than contact by the tolerance.

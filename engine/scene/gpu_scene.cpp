@@ -5,8 +5,8 @@
 #include <cstring>
 #include <iterator>
 
-#include "gpu/barrier.h"
 #include "gpu/api.h"
+#include "gpu/barrier.h"
 #include "scene/parallel.h"
 #include "scene/placement.h"
 

@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "cpu/clearance.h"
-#include "cpu/query_search.h"
 #include "exact/blocking.h"
 #include "query/cancelled.h"
+#include "query/course.h"
 #include "scene/parallel.h"
 
 namespace radar {
@@ -70,7 +70,7 @@ cpu::PairRule ruleFor(const gpu::UnresolvedPair& pair, const Query& query, std::
 
 // `finder`: as of the CPU's search, about to begin.
 template <class Finder>
-Result decideBy(Finder&& finder, Pairs pairs, const Query& query, const Motion& motion,
+Result decideBy(Finder&& finder, Pairs pairs, const Query& query, const Translation& motion,
                 std::span<const Vector> farthest) {
   for (const gpu::UnresolvedPair* pair : pairs) {
     finder.beginObject(ruleFor(*pair, query, farthest), motion);
@@ -164,9 +164,10 @@ std::optional<Merged> settledAnswer(const Query& query, double tolerance, std::s
 
 std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches) {
   auto answer = settledAnswer(query, cpu::toleranceOf(query, scene.meshes[query.mesh]), searches);
-  if (!answer || !isStep(query, scene) || query.motion) return answer;
-  cpu::toDistances(answer->first, query.distance);
-  for (Result& hit : answer->hits) cpu::toDistances(hit, query.distance);
+  if (!answer) return answer;
+  const Course course(query, scene);
+  course.toQuery(answer->first);
+  for (Result& hit : answer->hits) course.toQuery(hit);
   return answer;
 }
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <stop_token>
 
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "math/vector.h"
 #include "query/hits.h"
 #include "radar/answers.h"
@@ -21,7 +21,7 @@ namespace radar {
 struct OpenSearch {
   Result& result;        ///< as the device found it, then decided
   Query query;           ///< with `anyHit`, any pair that meets decides
-  Motion motion;         ///< of the search
+  Translation motion;    ///< of the search
   double tolerance = 0;  ///< of the query's clearance (cpu/clearance.h)
 };
 

@@ -7,7 +7,7 @@
 #include "exact/blocking.h"
 #include "math/frame.h"
 #include "math/rounding.h"
-#include "query/swept.h"
+#include "query/course.h"
 
 namespace radar {
 
@@ -16,8 +16,8 @@ namespace {
 // Longer lengths are out of range anyway.
 constexpr double kLongest = 1e38;
 
-void stateDistance(gpu::StatedSearch& out, const Query& query, const Motion& motion) {
-  const double way = motion.wayUntil(motion.distance);
+void stateDistance(gpu::StatedSearch& out, const Query& query, const Translation& motion) {
+  const double way = motion.wayUntil(motion.end);
   out.exponent = way > 0 ? std::ilogb(way) : 0;
   const double mantissa = std::ldexp(way, -out.exponent);
   out.way = roundUp(mantissa);
@@ -51,12 +51,12 @@ const SearchPlan::Group& groupOf(std::span<const SearchPlan::Group> groups, uint
                                          [&](const SearchPlan::Group& group) { return group.first <= search; }));
 }
 
-gpu::Sweep sweepOf(const Query& query, const Motion& motion, const Vector& direction, uint32_t result) {
+gpu::Sweep sweepOf(const Query& query, const Translation& motion, const Vector& direction, uint32_t result) {
   gpu::Sweep sweep{};
   std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), sweep.pose);
   std::copy(direction.begin(), direction.end(), sweep.direction);
   sweep.directionLength = exact::length(direction);
-  sweep.distance = motion.distance;
+  sweep.distance = motion.end;
   sweep.perParameter = sweep.directionLength;
   if (motion.isStep) {
     sweep.perParameter = largest(direction) / largest(motion.direction);
@@ -71,7 +71,7 @@ Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& 
                         ObjectId object) {
   if (!tree.inRange()) return Planned::outOfRange;
   if (tree.nodes().empty()) return Planned::clear;
-  const Motion motion = motionPast(query, scene, object);
+  const Translation motion = Course(query, scene).past(object);
   const Vector direction = scaledDirection(motion.direction);
   if (std::ilogb(largest(direction)) != 0) return Planned::outOfRange;
   const Mesh& mesh = scene.meshes[query.mesh];

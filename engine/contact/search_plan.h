@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "scene/scene.h"
 #include "shaders/contact/interop.h"
 
@@ -46,6 +46,6 @@ const SearchPlan::Group& groupOf(std::span<const SearchPlan::Group> groups, uint
 
 /// A query's search in double precision, but for what depends on a scale. `motion`: the query's; `direction`: that of
 /// the motion, by scaledDirection(). `result`: the index of its answer.
-gpu::Sweep sweepOf(const Query& query, const Motion& motion, const Vector& direction, uint32_t result);
+gpu::Sweep sweepOf(const Query& query, const Translation& motion, const Vector& direction, uint32_t result);
 
 }  // namespace radar

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "exact/double_double.h"
-#include "exact/motion.h"
 #include "exact/nearest_points.h"
+#include "exact/translation.h"
 
 namespace radar::cpu {
 

@@ -32,7 +32,7 @@ struct Approach {
 
 /// When triangle a, moved by t along `direction`, comes within `clearance` > 0 of b; none if it certainly does not for
 /// 0 <= t <= `distance`: then `across` is set along their gap at some t. hi - lo is at most `tolerance`, if
-/// rounding allows. `unit` is Motion::unit.
+/// rounding allows. `unit` is Translation::unit.
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
                                  const Vector& unit, double clearance, double distance, double tolerance,
                                  Vector* across = nullptr);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "exact/event.h"
 
@@ -13,14 +12,6 @@ namespace {
 
 // Of the longest side of the sensor's box, or of the clearance.
 constexpr double kTolerance = 1e-6;
-
-void setSeparation(Result& result, const Separation& separation) {
-  result.featureB = separation.features.b;
-  result.featureA = separation.features.a;
-  result.point = exact::withoutZeroSigns(separation.point);
-  result.normal = exact::withoutZeroSigns(separation.normal);
-  result.gap = separation.distance;
-}
 
 }  // namespace
 
@@ -33,28 +24,13 @@ double toleranceOf(const Query& query, const Mesh& sensor) {
   return std::min(*query.tolerance, kTolerance * std::max(side, query.clearance));
 }
 
-ClearanceContact::ClearanceContact(const Query& query, const Motion& motion, double tolerance)
-    : PairVisitor(motion.distance),
-      query_(query),
-      motion_(&motion),
-      tolerance_(tolerance),
-      lo_(std::numeric_limits<double>::infinity()) {}
-
-bool ClearanceContact::Near::isCertain() const {
-  return !std::isinf(approach.hi);
-}
-
-// Certain approaches come before open ones.
-bool ClearanceContact::Near::precedes(const Near& other) const {
-  if (approach.hi != other.approach.hi) return approach.hi < other.approach.hi;
-  if (!isCertain() && approach.lo != other.approach.lo) return approach.lo < other.approach.lo;
-  return name < other.name;
-}
+ClearanceContact::ClearanceContact(const Query& query, const Translation& motion, double tolerance)
+    : BracketedContact(query, motion.end, motion.isStep ? 0 : tolerance), motion_(&motion), tolerance_(tolerance) {}
 
 std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pair, Vector* across) const {
-  const Motion& motion = *motion_;
-  auto found = approach(pair.a, pair.b, motion.direction, motion.unit, query_.clearance,
-                        motion.wayUntil(motion.distance), tolerance_, across);
+  const Translation& motion = *motion_;
+  auto found = approach(pair.a, pair.b, motion.direction, motion.unit, query_.clearance, motion.wayUntil(motion.end),
+                        tolerance_, across);
   if (!found) return found;
   if (motion.isStep) {
     const auto timeOf = [&](double way, double rounding) {
@@ -62,11 +38,11 @@ std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pa
     };
     found->lo = timeOf(found->lo, 1 - 4 * kUnit);
     if (!std::isinf(found->hi)) found->hi = timeOf(found->hi, 1 + 4 * kUnit);
-    if (found->lo > motion.distance) return std::nullopt;
+    if (found->lo > motion.end) return std::nullopt;
     // The way until then has been rounded: only the end itself is known to be in time.
-    const bool isLate = found->hi > motion.distance && !std::isinf(found->hi);
+    const bool isLate = found->hi > motion.end && !std::isinf(found->hi);
     if (isLate && certainlyWithin(pair.a, pair.b, motion.direction, query_.clearance)) {
-      found->hi = motion.distance;
+      found->hi = motion.end;
     } else if (isLate) {
       found->hi = std::numeric_limits<double>::infinity();
     }
@@ -93,87 +69,19 @@ bool ClearanceContact::hasSunkIn(const exact::PlacedPair& pair) const {
   return touching.found() && touching.overlaps();
 }
 
-void ClearanceContact::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
-  if (isBefore(name)) return;
+std::optional<Approach> ClearanceContact::bracketOf(const exact::PairName&, const exact::PlacedPair& pair) {
   const double reach = std::max(query_.clearance, query_.ignoreLeaving ? 2 * rule_.slack : 0);
   const Vector displacement = scaled(motion_->wayUntil(latest_), motion_->unit);
-  if (across_ != Vector{} && stayApart(pair.a, pair.b, across_, displacement, reach)) return;
-  auto found = approachOf(pair, best_.empty() ? &across_ : nullptr);
+  if (across_ != Vector{} && stayApart(pair.a, pair.b, across_, displacement, reach)) return std::nullopt;
+  auto found = approachOf(pair, hasFound() ? nullptr : &across_);
   if (query_.ignoreLeaving && query_.clearance <= 2 * rule_.slack && hasSunkIn(pair)) {
     found = Approach{0, 0, separationOf(pair.a, pair.b)};
   }
-  if (!found) return;
-  Near near{name, *found, found->lo};
-  const bool matters = best_.empty() || near.lo < best_[0].lo || near.precedes(best_[0]);
-  if (!matters || (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance))) return;
-  lo_ = std::min(lo_, near.lo);
-  if (best_.empty()) {
-    best_.push_back(near);
-  } else {
-    near.lo = best_[0].lo = std::min(near.lo, best_[0].lo);
-    if (!near.precedes(best_[0])) return;
-    best_[0] = near;
-  }
-  if (near.isCertain() && !std::isnan(near.approach.atLo.normal[0])) across_ = near.approach.atLo.normal;
-  atStart_ = near.approach.hi == 0;
-  // What is within the clearance at the start is named by NearestAtStart.
-  decided_ = near.isCertain() && (query_.anyHit || (atStart_ && query_.hits == 1));
-  first_ = {name.object, 0, 0};
-  // A later pair may have a bracket that begins before this one's, which then widens that of the answer.
-  latest_ = std::min(latest_, near.approach.hi + (motion_->isStep ? 0 : tolerance_));
+  return found;
 }
 
-void ClearanceContact::endObject() {
-  if (query_.hits == 1 || best_.empty()) return;
-  if (best_[0].isCertain()) {
-    latest_ = std::min(motion_->distance, addNearest(nearest_, query_.hits, best_[0]));
-    atStart_ = false;
-  } else {
-    open_.push_back(best_[0]);
-  }
-  best_.clear();
-}
-
-Result ClearanceContact::answer(const Near& near) const {
-  Result result(!near.isCertain() ? Status::undecided : near.approach.hi == 0 ? Status::overlap : Status::hit);
-  result.lo = near.lo;
-  result.object = near.name.object;
-  if (!near.isCertain()) return result;
-  result.detected = Detected::yes;
-  result.t = near.lo;
-  result.hi = near.approach.hi;
-  result.fraction = motion_->distance > 0 ? result.t / motion_->distance : 0;
-  result.triB = near.name.triB;
-  result.triA = near.name.triA;
-  setSeparation(result, near.approach.atLo);
-  return result;
-}
-
-Result ClearanceContact::first() const {
-  const std::vector<Near>& found = !nearest_.empty() ? nearest_ : !best_.empty() ? best_ : open_;
-  if (found.empty()) return Result(Status::clear);
-  Near first = found[0];
-  first.lo = lo_;
-  if (first.isCertain() && !query_.anyHit) return answer(first);
-  // No ids, as of any decision and of what is undecided.
-  Result result(first.isCertain() ? Status::hit : Status::undecided);
-  result.lo = first.isCertain() ? 0 : lo_;
-  if (first.isCertain()) result.t = result.hi = motion_->distance;
-  if (first.isCertain()) result.fraction = motion_->distance > 0 ? 1 : 0;
-  if (first.isCertain()) result.detected = Detected::yes;
-  return result;
-}
-
-std::vector<Result> ClearanceContact::nearest() const {
-  std::vector<Result> results;
-  const bool isFull = nearest_.size() == query_.hits;
-  for (const Near& near : nearest_) results.push_back(answer(near));
-  for (const Near& near : open_) {
-    if (!isFull || near.lo <= nearest_.back().approach.hi) results.push_back(answer(near));
-  }
-  std::sort(results.begin(), results.end(),
-            [](const Result& p, const Result& q) { return p.lo != q.lo ? p.lo < q.lo : p.object < q.object; });
-  return results;
+bool ClearanceContact::counts(const exact::PlacedPair& pair) const {
+  return !query_.ignoreLeaving || rule_.blocks(pair, *motion_, query_.clearance);
 }
 
 void NearestAtStart::consider(const exact::PairName& name, const exact::PlacedPair& pair) {

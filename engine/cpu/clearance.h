@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "cpu/approach.h"
-#include "cpu/first_contact.h"
+#include "cpu/bracketed_contact.h"
 #include "scene/scene.h"
 
 namespace radar::cpu {
@@ -17,48 +16,31 @@ namespace radar::cpu {
 /// default the share of the side. Without a clearance: 0.
 double toleranceOf(const Query& query, const Mesh& sensor);
 
-/// The answer does not depend on the order of the pairs, nor on those that come later than contact by the tolerance.
-class ClearanceContact final : public PairVisitor {
+/// Contact is to come as near as the clearance.
+class ClearanceContact final : public BracketedContact {
  public:
   /// `tolerance`: see toleranceOf. `query` and `motion` must outlive this.
-  ClearanceContact(const Query& query, const Motion& motion, double tolerance);
+  ClearanceContact(const Query& query, const Translation& motion, double tolerance);
 
   /// As of FirstContact.
-  void beginObject(const PairRule& rule, const Motion& motion) {
+  void beginObject(const PairRule& rule, const Translation& motion) {
     rule_ = rule;
     motion_ = &motion;
     if (query_.ignoreLeaving) lead_ = rule.leadOf(motion);
   }
-  void endObject();
-  void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
-  Result first() const;
-  std::vector<Result> nearest() const;
 
  private:
-  struct Near {
-    exact::PairName name;
-    Approach approach;  ///< its bounds in units of t
-    double lo;          ///< nothing considered together with this pair is within the clearance before this
-
-    bool isCertain() const;
-    bool precedes(const Near& other) const;
-    double latest() const { return approach.hi; }
-  };
+  std::optional<Approach> bracketOf(const exact::PairName& name, const exact::PlacedPair& pair) override;
+  bool counts(const exact::PlacedPair& pair) const override;
   /// `across`: of cpu::approach.
   std::optional<Approach> approachOf(const exact::PlacedPair& pair, Vector* across) const;
   /// Whether faces that are pressed together touch at the start, though rounding may have let them pass each other by
   /// the slack, and so by more than the clearance.
   bool hasSunkIn(const exact::PlacedPair& pair) const;
-  Result answer(const Near& near) const;
 
-  const Query& query_;
-  const Motion* motion_;  // past the current object
-  double tolerance_;
+  const Translation* motion_;  // past the current object
+  double tolerance_;           // world units
   PairRule rule_;
-  double lo_;                  // nothing is within the clearance before this
-  std::vector<Near> best_;     // at most one: of all objects, or of the current one if several are asked for
-  std::vector<Near> nearest_;  // one per object, earliest first
-  std::vector<Near> open_;     // of objects that rounding leaves open
 };
 
 /// Of what is within a query's clearance at the start, finds the nearest pair, and of equals the least.
@@ -68,7 +50,7 @@ class NearestAtStart {
   explicit NearestAtStart(const Query& query) : query_(query), reach_((1 + 0x1p-20) * query.clearance) {}
 
   /// `motion`: the query's past the next object, which must stay in place meanwhile.
-  void beginObject(const PairRule& rule, const Motion& motion) {
+  void beginObject(const PairRule& rule, const Translation& motion) {
     rule_ = rule;
     motion_ = &motion;
     if (query_.ignoreLeaving) lead_ = rule.leadOf(motion);
@@ -87,7 +69,7 @@ class NearestAtStart {
 
  private:
   const Query& query_;
-  const Motion* motion_ = nullptr;
+  const Translation* motion_ = nullptr;
   PairRule rule_;
   Lead lead_;
   double reach_;

@@ -7,10 +7,10 @@
 
 namespace radar::cpu {
 
-FirstContact::FirstContact(const Query& query, const Motion& motion)
-    : PairVisitor(motion.distance), query_(query), motion_(&motion), earliest_(motion) {}
+FirstContact::FirstContact(const Query& query, const Translation& motion)
+    : PairVisitor(motion.end), query_(query), motion_(&motion), earliest_(motion) {}
 
-void FirstContact::beginObject(const PairRule& rule, const Motion& motion) {
+void FirstContact::beginObject(const PairRule& rule, const Translation& motion) {
   rule_ = rule;
   if (!motion.isStep) return;
   motion_ = &motion;
@@ -50,7 +50,7 @@ void FirstContact::consider(const exact::PairName& name, const exact::PlacedPair
 
 void FirstContact::endObject() {
   if (query_.hits == 1 || !earliest_.found()) return;
-  latest_ = std::min(motion_->distance, addNearest(nearest_, query_.hits, std::move(earliest_)));
+  latest_ = std::min(motion_->end, addNearest(nearest_, query_.hits, std::move(earliest_)));
   atStart_ = false;
   earliest_ = exact::EarliestContact(*motion_);
 }

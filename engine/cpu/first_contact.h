@@ -60,21 +60,21 @@ struct PairRule {
   double slack = 0;
   exact::Mirrored mirrored;
 
-  bool blocks(const exact::PlacedPair& pair, const Motion& motion) const {
-    return exact::blocks(pair.a, pair.b, exact::courseOf(motion), slack, mirrored);
+  bool blocks(const exact::PlacedPair& pair, const Translation& motion) const {
+    return exact::blocks(pair.a, pair.b, exact::wayOf(motion), slack, mirrored);
   }
   /// With a clearance.
-  bool blocks(const exact::PlacedPair& pair, const Motion& motion, double clearance) const {
+  bool blocks(const exact::PlacedPair& pair, const Translation& motion, double clearance) const {
     const Nearing nearing =
         motion.stands ? Nearing::open : nearingOf(pair.a, pair.b, motion.direction, clearance, slack);
     if (nearing == Nearing::pressed) return blocks(pair, motion);
     if (nearing != Nearing::open) return nearing == Nearing::yes;
-    return exact::blocksWithin(pair.a, pair.b, exact::courseOf(motion), clearance, slack, mirrored);
+    return exact::blocksWithin(pair.a, pair.b, exact::wayOf(motion), clearance, slack, mirrored);
   }
   /// Pairs with this lead do not block. What is pressed together may have sunk in by the slack.
-  Lead leadOf(const Motion& motion) const { return {motion.stands ? Vector{} : motion.unit, 2 * slack}; }
-  bool arePressed(const exact::PlacedPair& pair, const Motion& motion) const {
-    return exact::arePressed(pair.a, pair.b, exact::courseOf(motion), slack, mirrored);
+  Lead leadOf(const Translation& motion) const { return {motion.stands ? Vector{} : motion.unit, 2 * slack}; }
+  bool arePressed(const exact::PlacedPair& pair, const Translation& motion) const {
+    return exact::arePressed(pair.a, pair.b, exact::wayOf(motion), slack, mirrored);
   }
 };
 
@@ -92,11 +92,11 @@ double addNearest(std::vector<Contact>& nearest, size_t most, Contact contact) {
 class FirstContact final : public PairVisitor {
  public:
   /// `query` and `motion` must outlive this.
-  FirstContact(const Query& query, const Motion& motion);
+  FirstContact(const Query& query, const Translation& motion);
 
   /// Call before and after the pairs of one object. `rule` matters only if the query ignores pairs that do not block.
   /// `motion` must stay in place until the next object, or until the answers are taken.
-  void beginObject(const PairRule& rule, const Motion& motion);
+  void beginObject(const PairRule& rule, const Translation& motion);
   void endObject();
 
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
@@ -110,7 +110,7 @@ class FirstContact final : public PairVisitor {
   bool considerExactly(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis);
 
   const Query& query_;
-  const Motion* motion_;  // past the current object
+  const Translation* motion_;  // past the current object
   PairRule rule_;
   exact::EarliestContact earliest_;              // of all objects, or of the current one if several are asked for
   std::vector<exact::EarliestContact> nearest_;  // one per object, earliest first
@@ -122,7 +122,7 @@ class CrossingTest final : public PairVisitor {
   CrossingTest() : PairVisitor(0) {}
 
   /// Call before and after the pairs of one object.
-  void beginObject(const PairRule& rule, const Motion&) { rule_ = rule; }
+  void beginObject(const PairRule& rule, const Translation&) { rule_ = rule; }
   /// Returns whether the surfaces of the sensor and the object cross.
   bool endObject() { return std::exchange(decided_, false); }
 

@@ -62,9 +62,9 @@ MeshAxes::MeshAxes(const Matrix3& linear) : rows(roughInverse(linear)) {
   }
 }
 
-PairMotion::PairMotion(const MeshPlacement& a, const MeshPlacement& b, const Motion& motion, double c, double latest)
-    : clearance(c), span(motion.wayUntil(latest)), speed(motion.speed) {
-  const Vector& unit = motion.unit;
+PairMotion::PairMotion(const MeshPlacement& a, const MeshPlacement& b, const Piece& p, double c, double latest)
+    : piece(p), clearance(c + p.deviation), span(p.wayUntil(latest)) {
+  const Vector& unit = piece.unit;
   int fastest = 0;
   for (int k = 0; k < 3; ++k) {
     gap[k] = a.origin[k] - b.origin[k];

@@ -1,7 +1,7 @@
 // Two placed meshes, one of them in motion, each in the other's frame. docs/method.md derives the bounds.
 #pragma once
 
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "scene/scene.h"
 
 namespace radar::cpu {
@@ -27,20 +27,21 @@ struct MeshAxes {
   explicit MeshAxes(const Matrix3& linear);
 };
 
-/// The motion of A past B. Time runs from 0 to 1; time 1 is distance `span`.
+/// A piece of the motion of A past B. Time runs from 0 to 1; time 1 is distance `span`.
 struct PairMotion {
-  Vector gap;        ///< from B's origin to A's
+  const Piece& piece;
+  Vector gap;        ///< from B's origin to A's, at the piece's start
   Vector travel;     ///< of A per unit of time
   Vector rounding;   ///< per world axis: bound on the error of a position or a displacement
-  double clearance;  ///< world units: meshes meet when they come this near
+  double clearance;  ///< world units: pairs matter that come this near on the straight way
   double span;       ///< world units; no contact that matters comes later
-  double speed;      ///< Motion::speed
 
-  /// Contacts later than t = `latest` do not matter.
-  PairMotion(const MeshPlacement& a, const MeshPlacement& b, const Motion& motion, double clearance, double latest);
+  /// `piece` outlives this. Meshes meet when they come as near as `clearance`. Contacts later than t = `latest`, which
+  /// is not before the piece, do not matter.
+  PairMotion(const MeshPlacement& a, const MeshPlacement& b, const Piece& piece, double clearance, double latest);
 
-  /// `t` of a motion in units of time, rounded up; 1 at most.
-  double timeOf(double t) const { return span > 0 ? std::min((1 + 8 * kUnit) * (speed * t / span), 1.0) : 1.0; }
+  /// `t` in units of time, rounded up; 1 at most.
+  double timeOf(double t) const { return span > 0 ? std::min((1 + 8 * kUnit) * (piece.wayUntil(t) / span), 1.0) : 1.0; }
 };
 
 /// One mesh in the other's normalised frame: a vertex p of the former is at matrix p + offset + t travel, with an error

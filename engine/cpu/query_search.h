@@ -10,9 +10,6 @@
 
 namespace radar::cpu {
 
-/// Converts the times of an answer, fractions of a step, to distances of a sensor that moves by `distance`.
-void toDistances(Result& result, double distance);
-
 /// Reuses its memory between queries. For one thread at a time.
 class QuerySearch {
  public:
@@ -33,10 +30,11 @@ class QuerySearch {
                      std::span<const ObjectId> skipped, Result& first, Listed* lists);
   template <class Finder>
   void search(const Task& task, ObjectId id, Finder& finder);
-  void searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion, PairVisitor& visitor);
+  /// `clearance`: as of a PairMotion.
+  void searchObject(const Task& task, ObjectId id, const Piece& piece, double clearance, PairVisitor& visitor);
 
   const std::stop_token* stop_ = nullptr;  // of the answer in hand
-  std::optional<Motion> past_;             // the sensor's motion past the current object, in a step
+  std::optional<Translation> past_;        // the sensor's motion past the current object, in a step
   MeshSearch meshes_;
   NearestSearch nearest_;
   uint64_t pairs_ = 0;

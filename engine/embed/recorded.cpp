@@ -25,7 +25,7 @@ Result outOfRange() {
 // The objects in reach of a query, ascending, and those that may be, wherever the host moves them: every object if only
 // the device knows how large the sensor is.
 std::vector<ObjectId> mayReach(const Query& query, const Scene::Impl& scene, const HostGeometryPass& geometry) {
-  std::vector<ObjectId> objects = inReach(query, scene, scene.objectTree());
+  std::vector<ObjectId> objects = inReach(query, scene, scene.objectTree(), roomyBox(query, scene));
   const Participants participants(query, scene);
   const auto add = [&](ObjectId id) {
     if (scene.objects[id].used && participants.contain(id)) objects.push_back(id);
@@ -129,7 +129,7 @@ Answers Recorded::answers(std::vector<Result> all, std::span<const gpu::Unresolv
     const Query& query = queries[number];
     // The object may move otherwise by now.
     const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
-    return OpenSearch{all[sweep.result], query, query.motion ? Motion(*query.motion, drift) : Motion(query),
+    return OpenSearch{all[sweep.result], query, query.motion ? Translation(*query.motion, drift) : Translation(query),
                       tolerances[number]};
   });
   Answers answers = unanswered(queries);
@@ -146,7 +146,7 @@ Answers Recorded::answersToWritten(std::vector<Result> all, std::span<const gpu:
                                    const gpu::Sweep* sweeps) const {
   decideAll(pairs, {.farthest = *farthest}, [&](uint32_t search, ObjectId) {
     const Query query = queryOf(sweeps[search]);
-    return OpenSearch{all[search], query, Motion(query)};
+    return OpenSearch{all[search], query, Translation(query)};
   });
   return {.results = std::move(all)};
 }

@@ -50,12 +50,11 @@ struct Depths {
   Number allowed;   ///< slack times the largest component of n
 };
 
-/// Two placed triangles, and the course if one counts.
+/// Two placed triangles, and the way if one counts.
 template <class Number>
 class Pair {
  public:
-  Pair(const Triangle& a, const Triangle& b, const Course* course, double slack)
-      : moves_(course != nullptr), slack_(slack) {
+  Pair(const Triangle& a, const Triangle& b, const Way* way, double slack) : moves_(way != nullptr), slack_(slack) {
     const Three<Number> origin = numbers<Number>(a[0]);
     for (size_t i = 0; i < 3; ++i) {
       a_[i] = minus(numbers<Number>(a[i]), origin);
@@ -65,10 +64,10 @@ class Pair {
       edgesA_[i] = minus(a_[(i + 1) % 3], a_[i]);
       edgesB_[i] = minus(b_[(i + 1) % 3], b_[i]);
     }
-    if (course != nullptr) {
-      direction_ = numbers<Number>(course->direction);
-      distance_ = Number(course->distance);
-      length_ = Number(course->length);
+    if (way != nullptr) {
+      direction_ = numbers<Number>(way->direction);
+      distance_ = Number(way->distance);
+      length_ = Number(way->length);
     }
     normalA_ = crossProduct(edgesA_[0], edgesA_[1]);
     normalB_ = crossProduct(edgesB_[0], edgesB_[1]);
@@ -172,24 +171,24 @@ class Pair {
 };
 
 /// Whether doubles with error bounds may compute with these numbers.
-bool haveSafeRange(const Triangle& a, const Triangle& b, const Course* course, double slack) {
+bool haveSafeRange(const Triangle& a, const Triangle& b, const Way* way, double slack) {
   bool safe = hasSafeRange(slack);
   for (size_t k = 0; k < 3; ++k) {
     for (size_t i = 1; i < 3; ++i) safe &= hasSafeRange(a[i][k] - a[0][k]);
     for (size_t i = 0; i < 3; ++i) safe &= hasSafeRange(b[i][k] - a[0][k]);
-    if (course != nullptr) safe &= hasSafeRange(course->direction[k]);
+    if (way != nullptr) safe &= hasSafeRange(way->direction[k]);
   }
-  if (course != nullptr) safe &= hasSafeRange(course->distance) && hasSafeRange(course->length);
+  if (way != nullptr) safe &= hasSafeRange(way->distance) && hasSafeRange(way->length);
   return safe;
 }
 
 template <class Decide>
-bool decided(const Triangle& a, const Triangle& b, const Course* course, double slack, const Decide& decide) {
-  if (haveSafeRange(a, b, course, slack)) {
-    const Answer rough = decide(Pair<Bounded>(a, b, course, slack));
+bool decided(const Triangle& a, const Triangle& b, const Way* way, double slack, const Decide& decide) {
+  if (haveSafeRange(a, b, way, slack)) {
+    const Answer rough = decide(Pair<Bounded>(a, b, way, slack));
     if (rough != Answer::open) return rough == Answer::yes;
   }
-  return decide(Pair<Dyadic>(a, b, course, slack)) == Answer::yes;
+  return decide(Pair<Dyadic>(a, b, way, slack)) == Answer::yes;
 }
 
 }  // namespace
@@ -200,16 +199,16 @@ bool isMirroring(const Transform& pose) {
   return sign(Determinant{{kOrigin, first}, {kOrigin, second}, {kOrigin, third}}) < 0;
 }
 
-bool blocks(const Triangle& a, const Triangle& b, const Course& course, double slack, Mirrored mirrored) {
-  return decided(a, b, &course, slack, [&](const auto& pair) {
+bool blocks(const Triangle& a, const Triangle& b, const Way& way, double slack, Mirrored mirrored) {
+  return decided(a, b, &way, slack, [&](const auto& pair) {
     const Answer flush = pair.areFlush(mirrored);
     if (flush == Answer::open) return flush;
     return flush == Answer::yes ? pair.isPressing(mirrored.b) : pair.areInseparable();
   });
 }
 
-bool arePressed(const Triangle& a, const Triangle& b, const Course& course, double slack, Mirrored mirrored) {
-  return decided(a, b, &course, slack, [&](const auto& pair) {
+bool arePressed(const Triangle& a, const Triangle& b, const Way& way, double slack, Mirrored mirrored) {
+  return decided(a, b, &way, slack, [&](const auto& pair) {
     const Answer flush = pair.areFlush(mirrored);
     return flush == Answer::no ? flush : both(flush, pair.isPressing(mirrored.b));
   });

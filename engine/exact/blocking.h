@@ -6,7 +6,7 @@
 #pragma once
 
 #include "exact/contact.h"
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "radar/scene.h"
 
 namespace radar::exact {
@@ -29,23 +29,23 @@ struct Mirrored {
 };
 
 /// How a triangle moves: by distance / length * direction. A direction of 0 is a motion that stands.
-struct Course {
+struct Way {
   Vector direction;
   double distance = 0, length = 1;
 };
 
-inline Course courseOf(const Motion& motion) {
-  return {motion.stands ? Vector{} : motion.direction, motion.distance, motion.length};
+inline Way wayOf(const Translation& motion) {
+  return {motion.stands ? Vector{} : motion.direction, motion.end, motion.length};
 }
 
 /// Whether triangle a, in motion, is blocked by b. Corners are as placed at the start, in the order of their meshes.
 /// Triangles in the plane of either, up to the slack, that face each other and overlap by more than the slack are
 /// pressed together: they block exactly if the motion would sink a into the solid behind b by more than the slack.
-bool blocks(const Triangle& a, const Triangle& b, const Course& course, double slack, Mirrored mirrored);
+bool blocks(const Triangle& a, const Triangle& b, const Way& way, double slack, Mirrored mirrored);
 
 /// Whether they block because they are pressed together. They then touch at the start, up to the slack, even if
 /// rounding has let them pass each other.
-bool arePressed(const Triangle& a, const Triangle& b, const Course& course, double slack, Mirrored mirrored);
+bool arePressed(const Triangle& a, const Triangle& b, const Way& way, double slack, Mirrored mirrored);
 
 /// Whether the triangles cross by more than the slack: no n has n . (a - b) >= -slack for all corners.
 bool cross(const Triangle& a, const Triangle& b, double slack);

@@ -29,10 +29,10 @@ bool EarliestContact::considerPressed(const PairName& name, const PlacedPair& pa
 }
 
 // -1, 0 or 1: the event comes before, at or after the end of the motion.
-int EarliestContact::compareToEnd(const Event& event, const Motion& motion) {
+int EarliestContact::compareToEnd(const Event& event, const Translation& motion) {
   if (event.s + event.error < motion.parameter) return -1;
   if (motion.isStep) return compareToParameter(event, motion.stands ? 0 : 1);
-  return compareToDistance(event, motion.distance);
+  return compareToDistance(event, motion.end);
 }
 
 // -1, 0 or 1: a contact that begins with `event` comes before, with or after the other.
@@ -87,8 +87,8 @@ Result EarliestContact::answer(bool anyHit) const {
   if (anyHit) {
     result.status = Status::hit;
     result.lo = 0;
-    result.t = result.hi = kept_.distance;
-    result.fraction = kept_.distance > 0 ? 1 : 0;
+    result.t = result.hi = kept_.end;
+    result.fraction = kept_.end > 0 ? 1 : 0;
   } else {
     describe(result);
   }
@@ -139,7 +139,7 @@ Vector EarliestContact::normalOf() const {
 }
 
 void EarliestContact::setBracket(Result& result, double t) const {
-  const double distance = kept_.distance;
+  const double distance = kept_.end;
   const bool atEnd = compareToEnd(event_, kept_) == 0;
   result.t = atEnd ? distance : std::min(t, distance);
   // Three roundings of half an ulp each, of the parameter, the length and the product, and one more here; the floor is

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "exact/contact_normal.h"
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "radar/answers.h"
 
 namespace radar::exact {
@@ -13,10 +13,10 @@ namespace radar::exact {
 class EarliestContact {
  public:
   /// `motion` must stay in place while pairs are considered.
-  explicit EarliestContact(const Motion& motion) : motion_(&motion), kept_(motion) {}
+  explicit EarliestContact(const Translation& motion) : motion_(&motion), kept_(motion) {}
 
   /// The motion of the pairs that are considered next: in a step, each object has its own.
-  void setMotion(const Motion& motion) { motion_ = &motion; }
+  void setMotion(const Translation& motion) { motion_ = &motion; }
 
   /// Computes the pair's contact exactly, and keeps it if it is the earliest so far and `counts()`, which is asked
   /// last. Returns whether it was kept.
@@ -70,15 +70,15 @@ class EarliestContact {
   int orderOf(const PairName& name, const Beginning& beginning) const;
   bool keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning, int order);
   static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
-  static int compareToEnd(const Event& event, const Motion& motion);
+  static int compareToEnd(const Event& event, const Translation& motion);
   void describe(Result& result) const;
   /// After moving by `s`. `begins`: contact does then, else it has begun before the start.
   Vector pointAt(double s, bool begins) const;
   Vector normalOf() const;
   void setBracket(Result& result, double t) const;
 
-  const Motion* motion_;
-  Motion kept_;  // of the earliest contact
+  const Translation* motion_;
+  Translation kept_;  // of the earliest contact
   bool found_ = false;
   bool overlap_ = false;
   PairName name_;

@@ -170,26 +170,26 @@ class Nearness {
 
 }  // namespace
 
-bool blocksWithin(const Triangle& a, const Triangle& b, const Course& course, double clearance, double slack,
+bool blocksWithin(const Triangle& a, const Triangle& b, const Way& way, double clearance, double slack,
                   Mirrored mirrored) {
-  if (clearance <= slack) return blocks(a, b, course, slack, mirrored);
-  const bool stands = course.direction == Vector{};
-  const auto interval = contact(a, b, stands ? Vector{1, 0, 0} : course.direction);
+  if (clearance <= slack) return blocks(a, b, way, slack, mirrored);
+  const bool stands = way.direction == Vector{};
+  const auto interval = contact(a, b, stands ? Vector{1, 0, 0} : way.direction);
   const bool meets = interval && sign(interval->last) >= 0;
   // What touches at the start has no distance to lose.
-  if (meets && sign(interval->first) <= 0) return blocks(a, b, course, slack, mirrored);
+  if (meets && sign(interval->first) <= 0) return blocks(a, b, way, slack, mirrored);
   double size = clearance;
   for (const Triangle* t : {&a, &b}) {
     for (const Vector& p : *t) size = std::max(size, largest(p));
   }
   const int exponent = std::ilogb(size);
-  Vector direction = course.direction;
+  Vector direction = way.direction;
   const int turn = stands ? 0 : std::ilogb(largest(direction));
   for (double& c : direction) c = std::ldexp(c, -turn);
   const Nearness pair(a, b, direction, exponent);
   const Dyadic c(std::ldexp(clearance, -exponent)), w(std::ldexp(slack, -exponent));
   const Fraction start = pair.atStart();
-  if ((start.num - w * w * start.den).sign() <= 0) return blocks(a, b, course, slack, mirrored);
+  if ((start.num - w * w * start.den).sign() <= 0) return blocks(a, b, way, slack, mirrored);
   if (meets && !stands) return true;
   const Fraction least = pair.everAfter();
   // sqrt(least) < c - w.

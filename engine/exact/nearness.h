@@ -9,7 +9,7 @@ namespace radar::exact {
 /// of s and `clearance`. They block if at some time from the start on, also beyond the end, they are nearer than m -
 /// slack; if m is at most the slack, they block as blocks() says. In real arithmetic, but that lengths below 2^-400 of
 /// the greatest one count as 0.
-bool blocksWithin(const Triangle& a, const Triangle& b, const Course& course, double clearance, double slack,
+bool blocksWithin(const Triangle& a, const Triangle& b, const Way& way, double clearance, double slack,
                   Mirrored mirrored);
 
 }  // namespace radar::exact

@@ -32,6 +32,8 @@ OpenNode* openNodes(size_t count) {
   return nodes.data();
 }
 
+}  // namespace detail
+
 Box roomyBox(const Query& query, const Scene::Impl& scene) {
   Box box = boxOf(scene.meshes[query.mesh], query.worldFromMesh.m);
   // Boxes have room for the default slack.
@@ -43,19 +45,11 @@ Box roomyBox(const Query& query, const Scene::Impl& scene) {
   return box;
 }
 
-}  // namespace detail
-
-Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object) {
-  if (!isStep(query, scene)) return Motion(query);
-  return {displacementOf(query), object == kNone ? Vector{} : scene.objects[object].object.motion};
-}
-
-std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, const Box* start) {
-  const Motion motion = motionPast(query, scene);
-  const auto wants = [way = motion.wayUntil(motion.distance)](double near) { return near <= way; };
+std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, const Box& start) {
+  const Translation motion = Course(query, scene).past();
+  const auto wants = [way = motion.wayUntil(motion.end)](double near) { return near <= way; };
   std::vector<ObjectId> found;
-  const auto add = [&](ObjectId id) { found.push_back(id); };
-  walk(query, motion, scene, tree, wants, add, start);
+  walk(Participants(query, scene), tree, motion, start, wants, [&](ObjectId id) { found.push_back(id); });
   std::sort(found.begin(), found.end());
   return found;
 }

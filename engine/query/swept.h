@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "query/course.h"
 #include "query/swept_box.h"
 #include "scene/scene.h"
 
@@ -21,6 +22,7 @@ class Participants {
   bool contain(ObjectId id) const {
     return (scene_.objects[id].object.mask & query_.mask) != 0 && !(marks_ != nullptr ? (*marks_)[id] : isListed(id));
   }
+  const Scene::Impl& scene() const { return scene_; }
 
  private:
   bool isListed(ObjectId id) const {
@@ -32,12 +34,11 @@ class Participants {
   std::vector<bool>* marks_ = nullptr;  // by object: of this thread, so that a list costs no more than its length
 };
 
-/// The sensor's motion past an object in a step, or past all objects in a sweep.
-Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object = kNone);
+/// A box around the sensor of a valid query at the start, with room for its clearance and slack.
+Box roomyBox(const Query& query, const Scene::Impl& scene);
 
-/// In ascending order, the objects that take part and whose boxes the sensor may meet on its way. `start`: see `walk`.
-std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
-                              const Box* start = nullptr);
+/// In ascending order, the objects that take part and whose boxes `start` may meet on the query's way.
+std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, const Box& start);
 
 namespace detail {
 
@@ -47,8 +48,6 @@ struct OpenNode {
 };
 /// Memory of this thread for the nodes that a walk has yet to visit.
 OpenNode* openNodes(size_t count);
-/// Where the sensor is at the start, with room for its clearance and slack.
-Box roomyBox(const Query& query, const Scene::Impl& scene);
 
 /// Prefetches the child nodes or the object of a node, because a scene's tree and objects do not fit a cache.
 inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, const Scene::Impl& scene) {
@@ -61,14 +60,13 @@ inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, 
 
 }  // namespace detail
 
-/// Calls `visit` with each object that takes part in a valid query and is in reach of its sensor, nearest first; all
-/// that take part, in ascending order, if the tree is out of range. `motion`: the sensor's. `wants`: bool(double near):
-/// whether objects still matter that are met after the sensor has moved by `near` world units, at the earliest. `visit`
-/// must not walk itself. `start`: the box that moves; null: the sensor's, with room for its clearance and slack.
+/// Calls `visit` with each participant that the box `start` may meet on a piece of its way, nearest first; with all of
+/// them, in ascending order, if the tree is out of range. `wants`: bool(double near): whether objects still matter that
+/// are met after the box has moved by `near` world units, at the earliest. `visit` must not walk itself.
 template <class Wants, class Visit>
-void walk(const Query& query, const Motion& motion, const Scene::Impl& scene, const ObjectTree& tree,
-          const Wants& wants, const Visit& visit, const Box* start = nullptr) {
-  const Participants participants(query, scene);
+void walk(const Participants& participants, const ObjectTree& tree, const Piece& piece, const Box& start,
+          const Wants& wants, const Visit& visit) {
+  const Scene::Impl& scene = participants.scene();
   if (!tree.inRange()) {
     for (ObjectId id = 0; id < scene.objects.size(); ++id) {
       if (scene.objects[id].used && wants(0.0) && participants.contain(id)) visit(id);
@@ -77,7 +75,7 @@ void walk(const Query& query, const Motion& motion, const Scene::Impl& scene, co
   }
   if (tree.nodes().empty()) return;
   const gpu::ObjectNode* const nodes = tree.nodes().data();
-  const SweptBox meets(start != nullptr ? *start : detail::roomyBox(query, scene), motion, tree);
+  const SweptBox meets(start, piece, tree);
   detail::OpenNode* const bottom = detail::openNodes(size_t{tree.depth()} + 2);
   detail::OpenNode* top = bottom;
   const auto push = [&](double near, const gpu::ObjectNode& node) {

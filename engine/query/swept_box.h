@@ -2,7 +2,7 @@
 // error bounds.
 #pragma once
 
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "math/lanes.h"
 #include "scene/object_tree.h"
 
@@ -11,7 +11,7 @@ namespace radar {
 class SweptBox {
  public:
   /// `tree` must be in range.
-  SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree);
+  SweptBox(const Box& box, const Piece& piece, const ObjectTree& tree);
 
   /// Lower bounds on the distances, world units, at which the boxes of two nodes are met; infinite if they are not.
   TwoDoubles operator()(const gpu::ObjectNode& first, const gpu::ObjectNode& second) const;

@@ -144,7 +144,7 @@ Box Planner::windowInWorld() const {
 void Planner::selectObjects() {
   double farthest = window_.lo[2];
   const Box start = windowInWorld();
-  for (const ObjectId id : inReach(query_, scene_, scene_.objectTree(), &start)) {
+  for (const ObjectId id : inReach(query_, scene_, scene_.objectTree(), start)) {
     const Object& object = scene_.objects[id].object;
     const Placed placed = framed(id, object.mesh, object.worldFromMesh);
     Box box = turned(scene_.meshes[object.mesh].box, placed.frameFromMesh, 0);
@@ -161,7 +161,7 @@ void Planner::selectObjects() {
 
 // The proposed pairs are solved about the sensor's size, up to D.
 void Planner::setSweep() {
-  const Motion motion(query_);
+  const Translation motion(query_);
   plan_.sweep = sweepOf(query_, motion, scaledDirection(motion.direction), 0);
   const int exponent = std::ilogb(std::max(size_, margin_));
   plan_.sweep.scale = static_cast<float>(std::ldexp(1.0, -exponent));

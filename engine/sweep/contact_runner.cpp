@@ -103,7 +103,7 @@ bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tr
   const Route route = routeOf(asked, scene, true);
   if (route == Route::cpu || !tree.inRange()) return false;
   std::vector<ObjectId> objects{kNone};
-  if (route == Route::searchEach) objects = inReach(asked, scene, tree);
+  if (route == Route::searchEach) objects = inReach(asked, scene, tree, roomyBox(asked, scene));
   if (objects.size() > mostSearches_) return false;
   if (flight.planned.count() + objects.size() > mostSearches_) submit(flight);
   SearchPlan& searches = flight.planned;
@@ -179,7 +179,7 @@ void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span
   const Deciding how{*resident_.farthest(), kMostDecided, options_.cpuThreads, flight.stop};
   flight.answers.stats.cpuPairs += decideAll(found.unresolved, how, [&](uint32_t search, ObjectId object) {
     const Query& query = flight.queries[groupOf(groups, search).query];
-    return OpenSearch{results[search], query, motionPast(query, scene, object),
+    return OpenSearch{results[search], query, Course(query, scene).past(object),
                       cpu::toleranceOf(query, scene.meshes[query.mesh])};
   });
   for (const SearchPlan::Group& group : groups) {

@@ -98,7 +98,7 @@ void SampledRunner::finish(Flight& flight) {
     std::vector<Result> contacts(found.contacts.begin(), found.contacts.end());
     answers.stats.cpuPairs += decideAll(found.unresolved, {}, [&](uint32_t i, ObjectId) {
       const Query& query = flight.queries[queries[i]];
-      return OpenSearch{contacts[i], query, Motion(query)};
+      return OpenSearch{contacts[i], query, Translation(query)};
     });
     for (uint32_t i = 0; i < queries.size(); ++i) {
       answers.results[queries[i]] =
@@ -182,7 +182,7 @@ Scopes SampledRunner::scopes(const Query& query) {
 
   Scopes out;
   Result contact = found.contacts[0];
-  decideAll(found.unresolved, {}, [&](uint32_t, ObjectId) { return OpenSearch{contact, query, Motion(query)}; });
+  decideAll(found.unresolved, {}, [&](uint32_t, ObjectId) { return OpenSearch{contact, query, Translation(query)}; });
   out.result =
       plan.inReach.empty() ? decodeClear() : decodeSampled(found.answers[0], contact, query, plan.view.resolution);
   out.width = plan.view.width;

@@ -178,8 +178,8 @@ TEST_CASE("the device places what a host deforms without bounds as precisely as 
     CHECK(sweep.scale == sensor.scale);
     const double ratio = double{sensor.scale} / encoded.scale;
     CHECK((ratio == 1 || ratio == 0.5 || ratio == 2));
-    const Motion motion = motionPast(query, impl);
-    const double way = motion.wayUntil(motion.distance) * sensor.scale, clipped = std::min(way, 0x1p42);
+    const Translation motion = Course(query, impl).past();
+    const double way = motion.wayUntil(motion.end) * sensor.scale, clipped = std::min(way, 0x1p42);
     const auto checkScaled = [&](float found, float expected) {
       CHECK(double{found} == Approx(ratio * expected).epsilon(2e-6));
     };

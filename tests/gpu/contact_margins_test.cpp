@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cpu/approach.h"
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "gpu/contact_margins_interop.h"
 #include "gpu/kernel_fixture.h"
 #include "math/rounding.h"
@@ -152,7 +152,7 @@ class Margins {
     }
     c.doubt = 0x1p-50L * (spanA + spanB + c.contact);
     c.clearance = size * magnitude(random_, 10);
-    const Motion motion(c.query);
+    const Translation motion(c.query);
     c.nearing = cpu::approach(placedTriangle(a, c.query.worldFromMesh, c.triangleA),
                               placedTriangle(b, object.worldFromMesh, c.triangleB), motion.direction, motion.unit,
                               c.clearance, c.query.distance, 0);

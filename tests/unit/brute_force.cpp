@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "blocking_oracle.h"
-#include "exact/motion.h"
+#include "exact/translation.h"
 
 namespace oracle {
 
@@ -153,8 +153,8 @@ class Meeting {
     dirScale_ = leastExponent(direction.data(), 3);
     direction_ = scaled(direction, dirScale_);
     stands_ = isZero(direction_);
-    const radar::Motion sweep = isStep_ ? radar::Motion(direction, {}) : radar::Motion(query);
-    whole_ = courseOf(isStep_ ? direction : sweep.direction, sweep.distance, sweep.length, scale_);
+    const radar::Translation sweep = isStep_ ? radar::Translation(direction, {}) : radar::Translation(query);
+    whole_ = courseOf(isStep_ ? direction : sweep.direction, sweep.end, sweep.length, scale_);
     course_ = stands_ ? IntVec{1, 2, 3} : direction_;
     a_ = boxed(a, isMirrored(query.worldFromMesh), scale_);
     b_ = boxed(b, isMirrored(object.worldFromMesh), scale_);

@@ -29,7 +29,7 @@ bool holds(const MeshTree& tree, size_t node, uint32_t triangle) {
 struct Pair {
   const Mesh &a, &b;
   const Transform &poseA, &poseB;
-  Motion motion;
+  Translation motion;
   MeshPlacement placementA, placementB;
   PairMotion pairMotion;
   RelativePlacement fromA, fromB;

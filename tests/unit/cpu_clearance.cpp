@@ -2,7 +2,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "cpu/approach.h"
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "nearness_truth.h"
 #include "radar/cpu_sweeper.h"
 #include "scene_kinds.h"
@@ -213,7 +213,7 @@ TEST_CASE("a bracket is as narrow as rounding allows though doubles do not tell 
   const Vector point{1, -3, 1};
   const exact::Triangle face{{{3, -0.5, 0.5}, {3, -0.5, 1.5}, {2, -0.5, 1.5}}};
   const Query query{.direction = {2, 1.5, -0.5}};
-  const Motion motion(query);
+  const Translation motion(query);
   const auto found = cpu::approach({point, point, point}, face, motion.direction, motion.unit, 1, 10, 0);
   REQUIRE(found);
   CHECK(found->lo <= std::sqrt(6.5));
@@ -289,7 +289,7 @@ TEST_CASE("slivers up to 1e13 times as long as wide are decided, though doubles 
       Random random(seed);
       const exact::Triangle a = sliver(random, stretch), b = sliver(random, stretch);
       Query query{.direction = random.inBall(), .distance = random.chance(0.5) ? 10 : 10 * stretch};
-      const Motion motion(query);
+      const Translation motion(query);
       const double clearance = std::exp(random.uniform(-7, 1)), tolerance = 1e-6;
       const auto found = cpu::approach(a, b, motion.direction, motion.unit, clearance, query.distance, tolerance);
       const distances::Point<Quad> unit = distances::pointOf<Quad>(motion.direction).normalized();

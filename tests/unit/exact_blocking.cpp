@@ -87,8 +87,8 @@ void check(const Pair& made, Counts& counts) {
     const double length = radar::exact::length(direction);
     const bool truth =
         oracle::blocks(pair.a, pair.b, oracle::courseOf(direction, distance, length, pair.unit), pair.slack);
-    const radar::exact::Course course{direction, distance, length};
-    REQUIRE(radar::exact::blocks(a, b, course, slack, {mirroredA, mirroredB}) == truth);
+    const radar::exact::Way way{direction, distance, length};
+    REQUIRE(radar::exact::blocks(a, b, way, slack, {mirroredA, mirroredB}) == truth);
     ++(truth ? counts.blocking : counts.passing);
     counts.flush += oracle::areFlush(pair.a, pair.b, pair.slack);
   }

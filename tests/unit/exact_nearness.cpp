@@ -44,7 +44,7 @@ TEST_CASE(
     const int clearance = random.integer(1, 12), slack = random.chance(0.5) ? 0 : random.integer(0, 3);
     const oracle::Nearness nearness = oracle::nearnessOf(integers(a), integers(b), integers(direction));
     const auto& [start, least] = nearness;
-    const radar::exact::Course course{direction, 100, radar::exact::length(direction)};
+    const radar::exact::Way way{direction, 100, radar::exact::length(direction)};
     const double scale = std::ldexp(1.0, random.integer(-60, 60));
     Triangle scaledA = a, scaledB = b;
     for (Triangle* t : {&scaledA, &scaledB}) {
@@ -52,11 +52,11 @@ TEST_CASE(
         for (double& x : c) x *= scale;
       }
     }
-    const bool found = radar::exact::blocksWithin(scaledA, scaledB, {direction, 100 * scale, course.length},
+    const bool found = radar::exact::blocksWithin(scaledA, scaledB, {direction, 100 * scale, way.length},
                                                   clearance * scale, slack * scale, {});
     const bool touches = start.num <= Integer(slack * slack) * start.den || clearance <= slack;
     const bool truth =
-        touches ? radar::exact::blocks(a, b, course, slack, {}) : oracle::comesNearer(nearness, clearance, slack);
+        touches ? radar::exact::blocks(a, b, way, slack, {}) : oracle::comesNearer(nearness, clearance, slack);
     REQUIRE(found == truth);
     const auto roughly = radar::cpu::nearingOf(scaledA, scaledB, direction, clearance * scale, slack * scale);
     if (roughly == radar::cpu::Nearing::pressed) {

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "blocking_oracle.h"
-#include "exact/motion.h"
+#include "exact/translation.h"
 #include "nearness_oracle.h"
 #include "workloads/vectors.h"
 
@@ -178,8 +178,8 @@ struct NearTruth::Exact {
     const Corner way = directionPast(scene, query, id);
     direction = scaled(way, leastExponent(way.data(), 3));
     const bool step = isStep(scene, query);
-    const radar::Motion motion = step ? radar::Motion(way, {}) : radar::Motion(query);
-    course = courseOf(step ? way : motion.direction, motion.distance, motion.length, scale);
+    const radar::Translation motion = step ? radar::Translation(way, {}) : radar::Translation(query);
+    course = courseOf(step ? way : motion.direction, motion.end, motion.length, scale);
     slack = scaled(room, scale);
     clearance = scaled(query.clearance, scale);
   }

@@ -43,7 +43,7 @@ void checkTouch(const ObjectTree& tree, Random& random) {
     box.lo[k] = atLow ? nearest - size : nearest;
     box.hi[k] = atLow ? nearest : nearest + size;
   }
-  const Motion motion(way, {});
+  const Translation motion(way, {});
   const TwoDoubles met = SweptBox(box, motion, tree)(node, node);
   CAPTURE(when, met[0], motion.wayUntil(when));
   REQUIRE(met[0] == met[1]);

@@ -1,4 +1,4 @@
-#include "exact/motion.h"
+#include "exact/translation.h"
 
 #include <cmath>
 
@@ -22,18 +22,17 @@ Vector normalized(Vector v) {
 
 }  // namespace
 
-Motion::Motion(const Query& query)
-    : direction(scaledDirection(query.direction)),
-      unit(normalized(direction)),
-      length(exact::length(direction)),
-      distance(query.distance),
-      parameter(0) {
-  const double quotient = distance / length;
+Translation::Translation(const Query& query)
+    : direction(scaledDirection(query.direction)), length(exact::length(direction)), parameter(0) {
+  unit = normalized(direction);
+  end = query.distance;
+  const double quotient = end / length;
   if (length > kLeastNormal && quotient > kLeastNormal) parameter = (1 - 8 * kUnit) * quotient;
 }
 
-Motion::Motion(const Vector& sensor, const Vector& object)
-    : direction(minus(sensor, object)), length(1), distance(1), parameter(1 - 4 * kUnit), isStep(true), drift(object) {
+Translation::Translation(const Vector& sensor, const Vector& object)
+    : direction(minus(sensor, object)), length(1), parameter(1 - 4 * kUnit), isStep(true), drift(object) {
+  end = 1;
   stands = direction == Vector{};
   if (stands) {
     direction = {1, 0, 0};
@@ -42,12 +41,13 @@ Motion::Motion(const Vector& sensor, const Vector& object)
     speed = lengthOf(direction);
   }
   unit = normalized(direction);
+  rate = (1 + 8 * kUnit) * speed;
 }
 
 Vector displacementOf(const Query& query) {
   if (query.motion) return *query.motion;
-  const Motion sweep(query);
-  return scaled(sweep.distance, sweep.unit);
+  const Translation sweep(query);
+  return scaled(sweep.end, sweep.unit);
 }
 
 }  // namespace radar

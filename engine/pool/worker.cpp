@@ -14,6 +14,8 @@ namespace radar {
 
 namespace {
 
+constexpr uint32_t kAnyBatch = kNone - 1;  // no batch is as large; kNone is the default
+
 void nameThread([[maybe_unused]] uint32_t number) {
 #ifdef __linux__
   // Linux allows 15 characters.
@@ -95,7 +97,7 @@ void Worker::makeSweep(Lane& lane) {
   } catch (const Error& error) {
     if (!gpu::isOutOfMemory(error) || queue_.leave(number_)) throw;
     SweeperOptions onCpu = options_;
-    onCpu.cpuBatch = kNone - 1;
+    onCpu.cpuBatch = kAnyBatch;
     lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, onCpu, copy_, SearchRoom{}, false);
     lane.isMakeshift = true;
   }

@@ -20,19 +20,19 @@ const float kMostRatio = 1.0e12, kMostError = 1.0e9;
 
 float mostOf(MatrixRows m) { return max3(vec3(sum3(abs(m.x.xyz)), sum3(abs(m.y.xyz)), sum3(abs(m.z.xyz)))); }
 
-MeshPair meshPairOf(uint sensor, uint object) {
-  const MatrixRows a = sensorRows(sensor, kTexelCoarse), fineA = sensorRows(sensor, kTexelFine),
-                   normalsA = sensorRows(sensor, kTexelInverse);
+MeshPair meshPairOf(uint search, uint object) {
+  const MatrixRows a = sensorRows(search, kTexelCoarse), fineA = sensorRows(search, kTexelFine),
+                   normalsA = sensorRows(search, kTexelInverse);
   const MatrixRows b = objectRows(object, kTexelCoarse), fineB = objectRows(object, kTexelFine),
                    normalsB = objectRows(object, kTexelInverse);
-  const vec4 sizesA = sensorTexel(sensor, kTexelError), sizesB = objectTexel(object, kTexelError);
-  const vec3 direction = sensorTexel(sensor, kTexelDirection).xyz;
-  const float scale = scaleOf(sensor), unscale = unscaleOf(sensor);
-  const vec3 reachA = sensorTexel(sensor, kTexelReach).xyz, reachB = objectTexel(object, kTexelReach).xyz;
+  const vec4 sizesA = sensorTexel(search, kTexelError), sizesB = objectTexel(object, kTexelError);
+  const vec3 direction = sensorTexel(search, kTexelDirection).xyz;
+  const float scale = scaleOf(search), unscale = unscaleOf(search);
+  const vec3 reachA = sensorTexel(search, kTexelReach).xyz, reachB = objectTexel(object, kTexelReach).xyz;
 
   const vec3 high = lastOf(b) - lastOf(a), low = lastOf(fineB) - lastOf(fineA);
   const vec3 apart = differenceInParts(lastOf(b), lastOf(fineB), lastOf(a), lastOf(fineA)) * scale;
-  const float clearance = clearanceOf(sensor);
+  const float clearance = clearanceOf(search);
   const float error = scale * (sizesA.x + sizesB.x) + clearance;
   const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y) + clearance;
 
@@ -54,7 +54,7 @@ MeshPair meshPairOf(uint sensor, uint object) {
   p.offsetB = inverseA * apart;
   p.velocityA = inverseB * direction;
   p.velocityB = inverseA * direction;
-  p.farthest = max(1.00001 * min(distanceOf(sensor), most), 9.5367432e-7);
+  p.farthest = max(1.00001 * min(distanceOf(search), most), 9.5367432e-7);
   // The sum of all absolute terms along an axis.
   const vec3 spanB = reachB + sizeB * (abs3(matrixA) * reachA + abs(apart)),
              spanA = reachA + sizeA * (abs3(matrixB) * reachB + abs(apart));

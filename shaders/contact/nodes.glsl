@@ -33,18 +33,18 @@ uint objectMask(uint object) { return objectBits(object, kTexelError).z; }
 // Texels of a Sensor, its placement's first.
 const int kTexelAcross = 12, kTexelUpwards = 13, kTexelAlong = 14, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17,
           kTexelMask = 18;
-uvec4 sensorBits(uint sensor, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * sensor) + texel); }
-vec4 sensorTexel(uint sensor, int texel) { return uintBitsToFloat(sensorBits(sensor, texel)); }
-uint sensorRoot(uint sensor) { return sensorBits(sensor, kTexelReach).w; }
-float statedClearance(uint sensor) { return sensorTexel(sensor, kTexelAcross).w; }
-float slackShare(uint sensor) { return sensorTexel(sensor, kTexelUpwards).w; }
-float tolerance(uint sensor) { return sensorTexel(sensor, kTexelAlong).w; }
-float scaleOf(uint sensor) { return sensorTexel(sensor, kTexelDirection).w; }
-float distanceOf(uint sensor) { return sensorTexel(sensor, kTexelCentre).w; }
-float stopBefore(uint sensor) { return sensorTexel(sensor, kTexelHalfExtent).w; }
-uint sensorMask(uint sensor) { return sensorBits(sensor, kTexelMask).x; }
-uvec2 excludedOf(uint sensor) { return sensorBits(sensor, kTexelMask).yz; }  // the first, and where they end
-float unscaleOf(uint sensor) { return sensorTexel(sensor, kTexelMask).w; }
+uvec4 sensorBits(uint search, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * search) + texel); }
+vec4 sensorTexel(uint search, int texel) { return uintBitsToFloat(sensorBits(search, texel)); }
+uint sensorRoot(uint search) { return sensorBits(search, kTexelReach).w; }
+float statedClearance(uint search) { return sensorTexel(search, kTexelAcross).w; }
+float slackShare(uint search) { return sensorTexel(search, kTexelUpwards).w; }
+float tolerance(uint search) { return sensorTexel(search, kTexelAlong).w; }
+float scaleOf(uint search) { return sensorTexel(search, kTexelDirection).w; }
+float distanceOf(uint search) { return sensorTexel(search, kTexelCentre).w; }
+float stopBefore(uint search) { return sensorTexel(search, kTexelHalfExtent).w; }
+uint sensorMask(uint search) { return sensorBits(search, kTexelMask).x; }
+uvec2 excludedOf(uint search) { return sensorBits(search, kTexelMask).yz; }  // the first, and where they end
+float unscaleOf(uint search) { return sensorTexel(search, kTexelMask).w; }
 
 // Rows x, y, z.
 mat3 rows(vec3 x, vec3 y, vec3 z) { return transpose(mat3(x, y, z)); }
@@ -70,10 +70,10 @@ struct SensorBox {
   vec3 centre, halfExtent, inverseDirection;
 };
 
-SensorBox sensorBoxOf(uint sensor) {
+SensorBox sensorBoxOf(uint search) {
   // `halfExtent` has a margin for the raised velocity.
-  return SensorBox(sensorTexel(sensor, kTexelCentre).xyz, sensorTexel(sensor, kTexelHalfExtent).xyz,
-                   1.0 / awayFromZero(sensorTexel(sensor, kTexelDirection).xyz, vec3(9.0949470e-13)));
+  return SensorBox(sensorTexel(search, kTexelCentre).xyz, sensorTexel(search, kTexelHalfExtent).xyz,
+                   1.0 / awayFromZero(sensorTexel(search, kTexelDirection).xyz, vec3(9.0949470e-13)));
 }
 
 // The distances at which the sensor's box meets that of an ObjectNode; x > y: never.

@@ -17,13 +17,13 @@ void main() {
   const uint place = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (place >= counts.leftPairs) return;
   const uint i = refinedPairs[place].left;
-  const uint sensor = refinedPairs[i].search;
-  const double direction[3] = sweeps[sensor].direction;
+  const uint search = refinedPairs[i].search;
+  const double direction[3] = sweeps[search].direction;
   dvec3 a[3], b[3];
-  placedCorners(sweeps[sensor].pose, refinedPairs[i].slotA, a);
+  placedCorners(sweeps[search].pose, refinedPairs[i].slotA, a);
   placedCorners(objects[refinedPairs[i].object].pose, refinedPairs[i].slotB, b);
   const Impact m = impactOf(a, b, dvec3(direction[0], direction[1], direction[2]));
-  const Sweep sweep = sweeps[sensor];
+  const Sweep sweep = sweeps[search];
   const bool ignoresLeaving = sweep.ignoreLeaving != 0;
   const double earliest = firstOf(m), last = lastOf(m);
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > last;
@@ -39,6 +39,6 @@ void main() {
   float first = refinedPairs[i].first;
   if (m.ahead || !ignoresLeaving) first = max(first, scaledDown(low, sweep));
   refinedPairs[i].first = first;
-  if (m.ahead && !ignoresLeaving) lowerHi(sensor, sweep, last);
-  if ((ignoresLeaving || !sharp) && first <= uintBitsToFloat(states[sensor].hi)) leaveOpen(i);
+  if (m.ahead && !ignoresLeaving) lowerHi(search, sweep, last);
+  if ((ignoresLeaving || !sharp) && first <= uintBitsToFloat(states[search].hi)) leaveOpen(i);
 }

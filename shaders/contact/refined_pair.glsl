@@ -31,11 +31,11 @@ float scaledDown(double low, Sweep sweep) {
 // `by`: the pair certainly meets by this multiple of the direction.
 double scaledHi(Sweep sweep, double by) { return max(by, 0.0LF) * sweep.directionLength * double(sweep.scale); }
 
-bool wouldLowerHi(uint sensor, Sweep sweep, double by) {
-  return scaledHi(sweep, by) < double(uintBitsToFloat(states[sensor].hi));
+bool wouldLowerHi(uint search, Sweep sweep, double by) {
+  return scaledHi(sweep, by) < double(uintBitsToFloat(states[search].hi));
 }
 
-void lowerHi(uint sensor, Sweep sweep, double by) {
-  if (!wouldLowerHi(sensor, sweep, by)) return;
-  atomicMin(states[sensor].hi, floatBitsToUint(float(scaledHi(sweep, by) * (1.0LF + kRoundedFloat)) + 1e-37));
+void lowerHi(uint search, Sweep sweep, double by) {
+  if (!wouldLowerHi(search, sweep, by)) return;
+  atomicMin(states[search].hi, floatBitsToUint(float(scaledHi(sweep, by) * (1.0LF + kRoundedFloat)) + 1e-37));
 }

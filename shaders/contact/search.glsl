@@ -44,9 +44,9 @@ layout(push_constant) uniform PushConstants { SearchPush push; };
 
 // A sensor's clearance, scaled, rounded up.
 #ifdef RADAR_CLEARANCES
-float clearanceOf(uint sensor) { return statedClearance(sensor); }
+float clearanceOf(uint search) { return statedClearance(search); }
 #else
-float clearanceOf(uint sensor) { return 0.0; }
+float clearanceOf(uint search) { return 0.0; }
 #endif
 
 #include "node_pair.glsl"
@@ -137,8 +137,8 @@ void main() {
       ++work;
       uint named = takeTasks();
       named = shareTasks(named);
-      const SearchState state = states[sensor];
-      limit = limitOf(sensor, state);
+      const SearchState state = states[search];
+      limit = limitOf(search, state);
       least = state.least;
       named = findObjects(named);
       enterObjects(named, resumes);

@@ -13,8 +13,8 @@ const MeshPair kNoMeshes = MeshPair(mat3(0.0), mat3(0.0), vec3(0.0), vec3(0.0), 
 // Lanes without an object walk the tree over objects until they find one.
 uint findObjects(uint named) {
   ++work;
-  const SensorBox box = sensorBoxOf(sensor);
-  const float scale = scaleOf(sensor), most = limit * unscaleOf(sensor);
+  const SensorBox box = sensorBoxOf(search);
+  const float scale = scaleOf(search), most = limit * unscaleOf(search);
   for (uint step = 0; step < kObjectSteps; ++step) {
     const bool searching =
         named == kNobody && current.x == kNobody && depth > 0 && depth == objectDepth && depth < allowed;
@@ -46,7 +46,7 @@ uint findObjects(uint named) {
 bool isEligible(uint named) {
   ++work;
   // Excluded objects are in ascending order.
-  const uvec2 range = excludedOf(sensor);
+  const uvec2 range = excludedOf(search);
   uint first = range.x, end = range.y;
   while (countOf(first < end) != 0) {
     ++work;
@@ -60,7 +60,7 @@ bool isEligible(uint named) {
     }
   }
   const bool isExcluded = first < range.y && excluded[first] == named;
-  return !isExcluded && (objectMask(named) & sensorMask(sensor)) != 0;
+  return !isExcluded && (objectMask(named) & sensorMask(search)) != 0;
 }
 
 // Lanes with a new object begin at its root, or at the nodes of their task (`current`). `resumes`: lanes have forgotten what
@@ -73,12 +73,12 @@ void enterObjects(uint named, bool resumes) {
   const bool places = enters || (resumes && (current.x != kNobody || depth > objectDepth));
   countWork(kWorkObject, places);
   if (places) {
-    meshes = meshPairOf(sensor, object);
+    meshes = meshPairOf(search, object);
     if (!meshes.inRange) {
-      atomicOr(states[sensor].flags, kSearchOutOfRange);
+      atomicOr(states[search].flags, kSearchOutOfRange);
       current.x = kNobody;
     } else if (enters && current.x == kNobody) {
-      current = uvec3(sensorRoot(sensor) | kLinkPair, objectRoot(object), 0);
+      current = uvec3(sensorRoot(search) | kLinkPair, objectRoot(object), 0);
     }
   }
 }

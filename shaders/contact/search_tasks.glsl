@@ -11,7 +11,7 @@ uint room;     // in the list of spilled tasks, for all workgroups but the first
 uint allowed;  // entries of a lane's stack for which there is room there
 
 // Of a lane.
-uint sensor = 0, object = 0;
+uint search = 0, object = 0;
 float limit = 0.0;                     // contacts beyond this do not count, scaled
 uint least = kNobody;                  // SearchState::least: greater objects do not count
 uvec3 stack[kStack];                   // a, b, gap of a SearchTask; for the tree over objects: kNobody, link, gap
@@ -22,9 +22,9 @@ bool isIdle() { return current.x == kNobody && depth == 0; }
 
 // Begins a task; returns its object, or kNobody if it is a node of the tree over objects or no longer counts.
 uint begin(SearchTask task) {
-  sensor = task.search;
-  const SearchState state = states[sensor];
-  if (task.gap > limitOf(sensor, state) || (task.object != kNobody && task.object > state.least)) return kNobody;
+  search = task.search;
+  const SearchState state = states[search];
+  if (task.gap > limitOf(search, state) || (task.object != kNobody && task.object > state.least)) return kNobody;
   if (task.object == kNobody) {
     stack[0] = uvec3(kNobody, task.b, floatBitsToUint(task.gap));
     depth = objectDepth = 1;
@@ -58,7 +58,7 @@ uint shareTasks(uint named) {
   if (gives && rankOf(givers) < gifted) {
     const uvec3 entry = stack[0];
     gifts[rankOf(givers)] =
-        SearchTask(sensor, objectDepth > 0 ? kNobody : object, entry.x, entry.y, uintBitsToFloat(entry.z));
+        SearchTask(search, objectDepth > 0 ? kNobody : object, entry.x, entry.y, uintBitsToFloat(entry.z));
     // The last entry of each kind fills the hole.
     if (objectDepth > 0) {
       stack[0] = stack[objectDepth - 1];
@@ -122,9 +122,9 @@ uint spill() {
     const uint at = first + rankOf(who);
     meet();
     if (keeps && at < push.taskCapacity) {
-      spilled[at] = SearchTask(sensor, named, entry.x, entry.y, uintBitsToFloat(entry.z));
+      spilled[at] = SearchTask(search, named, entry.x, entry.y, uintBitsToFloat(entry.z));
     } else if (keeps) {
-      atomicOr(states[sensor].flags, kSearchLost);
+      atomicOr(states[search].flags, kSearchLost);
     }
   }
   return all;

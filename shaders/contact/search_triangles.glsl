@@ -12,7 +12,7 @@ uint trianglePairs = 0;
 
 void pushLeaves(bool has, uint linkA, uint linkB, float gap) {
   const uvec4 who = subgroupBallot(has);
-  if (has) queued[leaves + (leafTail + rankOf(who)) % kQueue] = QueuedPair(uvec4(linkA, linkB, object, sensor), gap);
+  if (has) queued[leaves + (leafTail + rankOf(who)) % kQueue] = QueuedPair(uvec4(linkA, linkB, object, search), gap);
   leafTail += subgroupBallotBitCount(who);
 }
 

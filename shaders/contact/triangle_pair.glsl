@@ -38,21 +38,21 @@ vec3 normalised(vec3 vertex, vec3 origin, float perUnit) { return (vertex - orig
 vec3 anchorOf(vec3 q) { return floor(q * 128.0 + 0.5) * 0.0078125; }
 
 // `vertexA` and `vertexB` are vertices of the leaves.
-PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
-  const MatrixRows a = sensorRows(sensor, kTexelCoarse), fineA = sensorRows(sensor, kTexelFine);
+PairFrame pairFrameOf(uint search, uint object, vec3 vertexA, vec3 vertexB) {
+  const MatrixRows a = sensorRows(search, kTexelCoarse), fineA = sensorRows(search, kTexelFine);
   const MatrixRows b = objectRows(object, kTexelCoarse), fineB = objectRows(object, kTexelFine);
-  const vec4 originA = sensorTexel(sensor, kTexelOrigin), originB = objectTexel(object, kTexelOrigin);
-  const mat3 frame = rows(sensorTexel(sensor, kTexelAcross).xyz, sensorTexel(sensor, kTexelUpwards).xyz,
-                          sensorTexel(sensor, kTexelAlong).xyz);
-  const float scale = scaleOf(sensor);
-  const float slack = slackShare(sensor) * scale * (sensorTexel(sensor, kTexelError).x + objectTexel(object, kTexelError).x);
+  const vec4 originA = sensorTexel(search, kTexelOrigin), originB = objectTexel(object, kTexelOrigin);
+  const mat3 frame = rows(sensorTexel(search, kTexelAcross).xyz, sensorTexel(search, kTexelUpwards).xyz,
+                          sensorTexel(search, kTexelAlong).xyz);
+  const float scale = scaleOf(search);
+  const float slack = slackShare(search) * scale * (sensorTexel(search, kTexelError).x + objectTexel(object, kTexelError).x);
   const vec3 anchorA = anchorOf(normalised(vertexA, originA.xyz, originA.w)),
              anchorB = anchorOf(normalised(vertexB, originB.xyz, originB.w));
   const vec3 apart = vec3(rowApart(a.x, fineA.x, anchorA, b.x, fineB.x, anchorB),
                           rowApart(a.y, fineA.y, anchorA, b.y, fineB.y, anchorB),
                           rowApart(a.z, fineA.z, anchorA, b.z, fineB.z, anchorB)) * scale;
   const mat3 matrixA = matrixOf(a, fineA) * scale, matrixB = matrixOf(b, fineB) * scale;
-  const float errorA = 1.75 * scale * sensorTexel(sensor, kTexelError).x + 1e-30 + slack;
+  const float errorA = 1.75 * scale * sensorTexel(search, kTexelError).x + 1e-30 + slack;
   const float errorB = 1.75 * scale * objectTexel(object, kTexelError).x + 24.0 * kUnit * sum3(abs(apart)) + 1e-30;
   const vec3 columnsA = vec3(1.0) * abs3(matrixA), columnsB = vec3(1.0) * abs3(matrixB);
   return PairFrame(MeshFrame(originA.xyz, originA.w, anchorA, frame * matrixA, vec3(0.0), columnsA, errorA),

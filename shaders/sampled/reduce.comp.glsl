@@ -26,18 +26,16 @@ shared uint listCount;
 shared uint minLOrdered;
 shared uint detectedAny;
 
-void main() {
-  const uint v = gl_WorkGroupID.x;
-  const uint cell = gl_LocalInvocationID.x;
-  const View view = views[v];
+// What a cell finds: its least L, and of its pixels that may be a contact the one of the least L; of equals, the first.
+struct Cell {
+  bool detected;
+  float minL, bestL, bestRange, bestMask;
+  uint bestPixel;
+};
+
+Cell readCell(View view, uint cell) {
   const uvec2 first = view.cell * uvec2(cell % kCellsPerSide, cell / kCellsPerSide);
   const uvec2 end = min(first + view.cell, uvec2(view.width, view.height));
-  if (cell == 0) {
-    listCount = 0;
-    minLOrdered = inOrder(floatBitsToUint(kFar));
-    detectedAny = 0;
-  }
-  barrier();
   const vec2 texel = 1.0 / vec2(textureSize(rangeScope, 0).xy);
 
   // Quads of texels are read whole and without branches. A texel outside the window, with an empty R or without the sensor
@@ -66,42 +64,52 @@ void main() {
       bestMask4 = mix(bestMask4, mask, better);
     }
   }
-  uint detected = detected4.x | detected4.y | detected4.z | detected4.w;
-  float minL = min(min(minL4.x, minL4.y), min(minL4.z, minL4.w));
-  float bestL = kFar, bestRange = 1.0, bestMask = 1.0;
-  uint bestPixel = kNobody;
+  Cell found = Cell(detected4 != uvec4(0), min(min(minL4.x, minL4.y), min(minL4.z, minL4.w)), kFar, 1.0, 1.0, kNobody);
   for (uint k = 0; k < 4; ++k) {
-    if (bestL4[k] < bestL || (bestL4[k] == bestL && bestPixel4[k] < bestPixel)) {
-      bestL = bestL4[k];
-      bestPixel = bestPixel4[k];
-      bestRange = bestRange4[k];
-      bestMask = bestMask4[k];
-    }
+    if (bestL4[k] > found.bestL || (bestL4[k] == found.bestL && bestPixel4[k] >= found.bestPixel)) continue;
+    found.bestL = bestL4[k];
+    found.bestPixel = bestPixel4[k];
+    found.bestRange = bestRange4[k];
+    found.bestMask = bestMask4[k];
   }
-  const bool proposes = bestPixel != kNobody;
-  if (detected != 0) {
+  return found;
+}
+
+void main() {
+  const uint v = gl_WorkGroupID.x;
+  const uint cell = gl_LocalInvocationID.x;
+  if (cell == 0) {
+    listCount = 0;
+    minLOrdered = inOrder(floatBitsToUint(kFar));
+    detectedAny = 0;
+  }
+  barrier();
+  const Cell own = readCell(views[v], cell);
+  const bool proposes = own.bestPixel != kNobody;
+  if (own.detected) {
     atomicOr(detectedAny, 1);
-    atomicMin(minLOrdered, inOrder(floatBitsToUint(minL)));
+    atomicMin(minLOrdered, inOrder(floatBitsToUint(own.minL)));
   }
   if (proposes) {
     const uint place = atomicAdd(listCount, 1);
-    listL[place] = bestL;
-    listPixel[place] = bestPixel;
+    listL[place] = own.bestL;
+    listPixel[place] = own.bestPixel;
   }
   barrier();
 
   const uint count = listCount;
   uint rank = 0;
-  for (uint i = 0; i < count; ++i) rank += uint(listL[i] < bestL || (listL[i] == bestL && listPixel[i] < bestPixel));
+  for (uint i = 0; i < count; ++i) {
+    rank += uint(listL[i] < own.bestL || (listL[i] == own.bestL && listPixel[i] < own.bestPixel));
+  }
   ranks[kCells * v + cell] = proposes ? rank : kNobody;
   if (proposes) {
-    candidates[kCells * v + rank] =
-        Candidate(bestPixel, bestRange, bestMask, kNobody, kNobody);
+    candidates[kCells * v + rank] = Candidate(own.bestPixel, own.bestRange, own.bestMask, kNobody, kNobody);
   }
   if (cell == 0) {
     const float least = floatOf(minLOrdered);
     const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
     answers[v] = Answer(least, flags, count);
-    states[v] = SearchState(floatBitsToUint(view.start), 0, kNobody);
+    states[v] = SearchState(floatBitsToUint(views[v].start), 0, kNobody);
   }
 }

@@ -58,7 +58,7 @@ def scaled_down(sources):
 def lower_hi(sources):
     floats = []
     contracts = {"float": as_float, "floatBitsToUint": floats.append, "atomicMin": UNKNOWN}
-    conditions = {"assumptions": {"!wouldLowerHi(sensor, sweep, by)": False}, "globals": {"states": UNKNOWN}}
+    conditions = {"assumptions": {"!wouldLowerHi(search, sweep, by)": False}, "globals": {"states": UNKNOWN}}
     evaluator = Evaluator(sources, DEVICE_DOUBLES, contracts=contracts, **conditions)
     evaluator.call("lowerHi", UNKNOWN, SWEEP, positive("by"))
     # `by` is a rounded sum, and so is the length rounded.

@@ -1,0 +1,182 @@
+#include "scene/mesh.h"
+
+#include <algorithm>
+
+#include "math/number_text.h"
+#include "math/rounding.h"
+
+namespace radar {
+
+namespace {
+
+constexpr double kMostBound = 0x1p120;
+// Least exponent of a mesh's unit: a float must hold its inverse.
+constexpr int kLeastUnit = -126;
+constexpr size_t kMostVertices = size_t{1} << 30;
+
+double edgeLength(const Mesh& mesh, uint32_t a, uint32_t b) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double difference = double(mesh.positions[3 * size_t{a} + k]) - mesh.positions[3 * size_t{b} + k];
+    sum += difference * difference;
+  }
+  return std::sqrt(sum);
+}
+
+// A float that makes position - origin exact for every position in [lo, hi]: 0, or exact by Sterbenz's lemma.
+double originOf(double lo, double hi) {
+  const double middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
+  return std::abs(middle) >= 2.5 * half ? static_cast<float>(middle) : 0;
+}
+
+// Computes the derived members but the tree. `box`: the bounds within which a host may deform the mesh, or empty.
+void derive(Mesh& mesh, Box box) {
+  // Vertices that no triangle uses must not widen the window.
+  for (uint32_t vertex : mesh.indices) {
+    const float* p = &mesh.positions[3 * size_t{vertex}];
+    box.add({p[0], p[1], p[2]});
+  }
+  setBox(mesh, box);
+  for (int k = 0; k < 3; ++k) {
+    const double used = mesh.positions[3 * size_t{mesh.indices[0]} + k];
+    mesh.local[k].assign(mesh.vertexCount(), static_cast<float>(used - mesh.origin[k]));
+  }
+  for (uint32_t vertex : mesh.indices) {
+    for (int k = 0; k < 3; ++k) {
+      mesh.local[k][vertex] = static_cast<float>(mesh.positions[3 * size_t{vertex} + k] - mesh.origin[k]);
+    }
+  }
+  double sum = 0;
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
+    sum += edgeLength(mesh, a, b) + edgeLength(mesh, b, c) + edgeLength(mesh, c, a);
+  }
+  mesh.meanEdge = sum / static_cast<double>(mesh.indices.size());
+}
+
+void requireFinite(const std::string& where, std::span<const float> positions) {
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (!std::isfinite(positions[i])) throw Error(where + ": vertex " + std::to_string(i / 3) + " is not finite");
+  }
+}
+
+// The bounds within which a host may deform the mesh, and its rest pose.
+Box boundsOf(const Mesh& mesh) {
+  Box box = mesh.box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] += mesh.origin[k];
+    box.hi[k] += mesh.origin[k];
+  }
+  return box;
+}
+
+// Vertices that no triangle uses may be anywhere.
+void requireInside(const Mesh& mesh, std::span<const float> positions) {
+  const Box box = boundsOf(mesh);
+  for (const uint32_t vertex : mesh.indices) {
+    for (int k = 0; k < 3; ++k) {
+      const float x = positions[3 * size_t{vertex} + k];
+      if (x >= box.lo[k] && x <= box.hi[k]) continue;
+      throw Error("setPositions: vertex " + std::to_string(vertex) + " is outside the mesh's bounds");
+    }
+  }
+}
+
+}  // namespace
+
+Box boxOf(const char* call, const Bounds& bounds) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(bounds.lo[k] <= bounds.hi[k] && bounds.lo[k] >= -kMostBound && bounds.hi[k] <= kMostBound)) {
+      throw Error(std::string(call) + ": bounds: expected lo <= hi and magnitudes of at most 2^120, got " +
+                  textOf(bounds.lo[k]) + " and " + textOf(bounds.hi[k]));
+    }
+  }
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = bounds.lo[k];
+    box.hi[k] = bounds.hi[k];
+  }
+  return box;
+}
+
+void requireAtMost(const char* where, const char* what, size_t count, size_t most) {
+  if (count <= most) return;
+  throw Error(std::string(where) + ": expected at most " + std::to_string(most) + " " + what + ", got " +
+              std::to_string(count));
+}
+
+void setBox(Mesh& mesh, const Box& box) {
+  float largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    mesh.farthest[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
+    mesh.origin[k] = originOf(box.lo[k], box.hi[k]);
+    mesh.box.lo[k] = box.lo[k] - mesh.origin[k];
+    mesh.box.hi[k] = box.hi[k] - mesh.origin[k];
+    mesh.reach[k] = roundUp(std::max(std::abs(mesh.box.lo[k]), std::abs(mesh.box.hi[k])));
+    largest = std::max(largest, mesh.reach[k]);
+  }
+  mesh.unit = largest > 0 ? std::ldexp(1.0, std::max(std::ilogb(largest), kLeastUnit)) : 1;
+}
+
+Mesh makeMesh(std::span<const float> positions, std::span<const uint32_t> indices,
+              const std::optional<Bounds>& bounds) {
+  if (positions.size() % 3 != 0)
+    throw Error("addMesh: positions: expected 3 floats per vertex, got " + std::to_string(positions.size()));
+  if (indices.size() % 3 != 0)
+    throw Error("addMesh: indices: expected 3 per triangle, got " + std::to_string(indices.size()));
+  if (indices.empty()) throw Error("addMesh: expected at least one triangle, got none");
+  requireAtMost("addMesh", "vertices", positions.size() / 3, kMostVertices);
+  requireAtMost("addMesh", "triangles", indices.size() / 3, kMostItems);
+  requireFinite("addMesh: positions", positions);
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (bounds && std::abs(positions[i]) > kMostBound) {
+      throw Error("addMesh: positions: vertex " + std::to_string(i / 3) +
+                  " of a mesh with bounds: expected coordinates of at most 2^120");
+    }
+  }
+  for (size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] >= positions.size() / 3) {
+      throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " refers to vertex " +
+                  std::to_string(indices[i]) + " of " + std::to_string(positions.size() / 3));
+    }
+  }
+  Mesh mesh;
+  mesh.positions.assign(positions.begin(), positions.end());
+  mesh.indices.assign(indices.begin(), indices.end());
+  mesh.used = true;
+  mesh.hasBounds = bounds.has_value();
+  Box box;
+  if (bounds) box = boxOf("addMesh", *bounds);
+  // The host writes floats, so the bounds are rounded outwards to floats.
+  for (int k = 0; k < 3 && bounds; ++k) {
+    box.lo[k] = roundDown(box.lo[k]);
+    box.hi[k] = roundUp(box.hi[k]);
+  }
+  derive(mesh, box);
+  mesh.tree = buildMeshTree(mesh);
+  return mesh;
+}
+
+void movePositions(Mesh& mesh, std::span<const float> positions) {
+  if (positions.size() != mesh.positions.size()) {
+    throw Error("setPositions: expected " + std::to_string(mesh.positions.size()) + " floats, 3 for each vertex, got " +
+                std::to_string(positions.size()));
+  }
+  requireFinite("setPositions", positions);
+  if (mesh.hasBounds) requireInside(mesh, positions);
+  const Box bounds = mesh.hasBounds ? boundsOf(mesh) : Box{};
+  const std::vector<float> before = mesh.positions;
+  const auto move = [&](std::span<const float> to) {  // in place: a MeshView shows them
+    std::copy(to.begin(), to.end(), mesh.positions.begin());
+    derive(mesh, bounds);
+  };
+  move(positions);
+  try {
+    refitMeshTree(mesh, mesh.tree);
+  } catch (...) {
+    move(before);
+    throw;
+  }
+}
+
+}  // namespace radar

@@ -6,7 +6,6 @@
 
 #include "exact/double_double.h"
 #include "exact/nearest_points.h"
-#include "exact/translation.h"
 
 namespace radar::cpu {
 
@@ -288,14 +287,14 @@ bool stayApart(const exact::Triangle& a, const exact::Triangle& b, const Vector&
   return gap > (1 + 0x1p-20) * std::sqrt(radar::dot(normal, normal)) * clearance + 64 * kUnit * size;
 }
 
-std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
-                                 const Vector& unit, double clearance, double distance, double tolerance,
-                                 Vector* across) {
+std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
+                                 double clearance, double tolerance, Vector* across) {
+  const double distance = motion.wayUntil(motion.end);
   const int exponent = exponentOf(a, b, clearance);
   const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
   const Pair<double> rough{relative<double>(a, a[0], scale),
                            relative<double>(b, a[0], scale),
-                           unit,
+                           motion.unit,
                            scale * clearance,
                            scale * distance,
                            scale * tolerance};
@@ -307,13 +306,10 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
   const auto found = search(rough, across);
   if (!found) return std::nullopt;
   if (!found->isRough || found->hi - found->lo <= rough.tolerance)
-    return withinWay(inWorld(*found, a, b, unit, unscale));
-  const Pair<DoubleDouble> fine{relative<DoubleDouble>(a, a[0], scale),
-                                relative<DoubleDouble>(b, a[0], scale),
-                                normalised(direction),
-                                {rough.clearance},
-                                {std::min(rough.distance, 1e290)},
-                                {rough.tolerance}};
+    return withinWay(inWorld(*found, a, b, motion.unit, unscale));
+  const Pair<DoubleDouble> fine{relative<DoubleDouble>(a, a[0], scale), relative<DoubleDouble>(b, a[0], scale),
+                                normalised(motion.direction),           {rough.clearance},
+                                {std::min(rough.distance, 1e290)},      {rough.tolerance}};
   const auto better = search(fine);
   return better ? std::optional(withinWay(inWorld(*better, a, b, fine.unit, unscale))) : std::nullopt;
 }

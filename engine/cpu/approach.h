@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "exact/contact.h"
+#include "exact/translation.h"
 
 namespace radar::cpu {
 
@@ -30,12 +31,11 @@ struct Approach {
   Separation atLo;  ///< if `hi` is known
 };
 
-/// When triangle a, moved by t along `direction`, comes within `clearance` > 0 of b; none if it certainly does not for
-/// 0 <= t <= `distance`: then `across` is set along their gap at some t. hi - lo is at most `tolerance`, if
-/// rounding allows. `unit` is Translation::unit.
-std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
-                                 const Vector& unit, double clearance, double distance, double tolerance,
-                                 Vector* across = nullptr);
+/// After how much of its motion, world units, triangle a comes within `clearance` > 0 of b; none if it certainly does
+/// not until the end: then `across` is set along their gap at some time. hi - lo is at most `tolerance`, if rounding
+/// allows.
+std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
+                                 double clearance, double tolerance, Vector* across = nullptr);
 
 /// How exact::blocksWithin decides, as far as double-doubles tell.
 enum class Nearing {

@@ -193,16 +193,18 @@ class TrianglePlacer {
 /// What the leaves of a pair of meshes are tested with.
 template <class Real>
 struct Leaves {
+  const MeshPair& pair;
   LeafTest<Real> test;
   TrianglePlacer placeA, placeB;
-  explicit Leaves(const MeshPair& pair)
-      : test(pair.sensor.mesh, pair.other.mesh, pair.fromOther), placeA(pair.sensor), placeB(pair.other) {}
+  explicit Leaves(const MeshPair& p)
+      : pair(p), test(p.sensor.mesh, p.other.mesh, p.fromOther), placeA(p.sensor), placeB(p.other) {}
 };
 
 /// Passes the pairs of triangles of two leaves to `visitor`, earliest first.
 template <class Real>
-void meetLeaves(const MeshPair& pair, Leaves<Real>& leaves, const gpu::MeshNode& a, const gpu::MeshNode& b, float near,
-                PairVisitor& visitor, uint64_t& pairs) {
+void meetLeaves(Leaves<Real>& leaves, const gpu::MeshNode& a, const gpu::MeshNode& b, float near, PairVisitor& visitor,
+                uint64_t& pairs) {
+  const MeshPair& pair = leaves.pair;
   // Raised by more than rounding to Real may lower it.
   const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(visitor.latest())); };
   const LeafTimes<Real> found = leaves.test(a, b, near, latest());
@@ -264,7 +266,7 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
     const bool areLeaves = isLeaf(a) && isLeaf(b);
     if (areLeaves || ++visits % kVisits == 0) throwIfStopped(stop);
     if (areLeaves) {
-      meetLeaves(pair, leaves, a, b, pairNow.near, visitor, pairs);
+      meetLeaves(leaves, a, b, pairNow.near, visitor, pairs);
       update();
       continue;
     }

@@ -25,20 +25,20 @@ double secondsSince(Clock::time_point start) {
 
 }  // namespace
 
-void Search::run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
-                 std::span<Result> results, std::span<Listed> lists, const std::stop_token& stop) {
+void Search::run(std::span<const Query> queries, const Scene::Impl& scene, std::span<Result> results,
+                 std::span<Listed> lists, const std::stop_token& stop) {
   const ObjectTree& tree = scene.objectTree();
   const size_t count = queries.size();
-  size_t workers = std::clamp<size_t>(count, 1, threadCount(threads));
+  size_t workers = std::clamp<size_t>(count, 1, threadCount(threads_));
   if (searches_.size() < workers) searches_.resize(workers);
   const auto answer = [&](unsigned worker, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
       throwIfStopped(stop);
       Listed* const listed = hasLists(queries[i]) ? &lists[i] : nullptr;
       results[i] = searches_[worker].answer(queries[i], scene, tree, listed, stop);
-      results[i].tier = tier;
+      results[i].tier = tier_;
       if (listed == nullptr) continue;
-      for (Result& hit : listed->hits) hit.tier = tier;
+      for (Result& hit : listed->hits) hit.tier = tier_;
     }
   };
   const Clock::time_point start = Clock::now();
@@ -75,12 +75,11 @@ namespace radar {
 
 struct CpuSweeper::Impl {
   const Scene& scene;
-  unsigned threads;
   cpu::Search search;
 };
 
 CpuSweeper::CpuSweeper(const Scene& scene, unsigned threads)
-    : impl_(std::make_unique<Impl>(Impl{scene, threads, {}})) {}
+    : impl_(std::make_unique<Impl>(Impl{scene, cpu::Search(Tier::reference, threads)})) {}
 CpuSweeper::~CpuSweeper() = default;
 CpuSweeper::CpuSweeper(CpuSweeper&&) noexcept = default;
 CpuSweeper& CpuSweeper::operator=(CpuSweeper&&) noexcept = default;
@@ -96,8 +95,7 @@ Answers CpuSweeper::run(std::span<const Query> queries, const std::stop_token& s
   Answers answers = unanswered(queries);
   const uint64_t before = impl_->search.pairs();
   try {
-    impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, answers.results, answers.lists,
-                      stop);
+    impl_->search.run(queries, impl_->scene.impl(), answers.results, answers.lists, stop);
   } catch (const Cancelled&) {
     cancelRest(answers);
   }

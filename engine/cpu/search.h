@@ -16,19 +16,23 @@ namespace radar::cpu {
 /// Answers queries; reuses the memory of its searches. For one thread at a time.
 class Search {
  public:
-  /// Writes the answers to `queries`, each with `tier`, to `results` and `lists`, of the same length; `lists` may be
-  /// empty if no query has lists. Uses up to `threads` threads
-  /// (0: one per core), including the caller's; it starts none for one query, or for a few that take less time than
-  /// starting a thread. The answers do not depend on the number of threads. The queries are valid, and the scene does
-  /// not change meanwhile. Soon after `stop` is requested, throws Cancelled; queries without an answer then have the
-  /// result that they had before.
-  void run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
-           std::span<Result> results, std::span<Listed> lists, const std::stop_token& stop);
+  /// `tier`: of the answers. Uses up to `threads` threads (0: one per core), including the caller's; it starts none for
+  /// one query, or for a few that take less time than starting a thread.
+  Search(Tier tier, unsigned threads) : tier_(tier), threads_(threads) {}
+
+  /// Writes the answers to `queries` to `results` and `lists`, of the same length; `lists` may be empty if no query has
+  /// lists. The answers do not depend on the number of threads. The queries are valid, and the scene does not change
+  /// meanwhile. Soon after `stop` is requested, throws Cancelled; queries without an answer then have the result that
+  /// they had before.
+  void run(std::span<const Query> queries, const Scene::Impl& scene, std::span<Result> results, std::span<Listed> lists,
+           const std::stop_token& stop);
 
   /// Pairs of triangles that all threads have tested since construction.
   uint64_t pairs() const;
 
  private:
+  Tier tier_;
+  unsigned threads_;
   std::vector<QuerySearch> searches_;  // one per thread
   double secondsPerQuery_ = 0;         // on one thread, in the last run
 };

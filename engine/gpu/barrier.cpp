@@ -20,16 +20,24 @@ void memoryBarrier(const Commands& commands, VkPipelineStageFlags2 fromStage, Vk
   commands->CmdPipelineBarrier2(commands, &info);
 }
 
-void depthBarrier(const Commands& commands, VkImage image, VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess,
-                  VkImageLayout from, VkPipelineStageFlags2 toStage, VkAccessFlags2 toAccess, VkImageLayout to) {
+// How an image is used.
+struct ImageUse {
+  VkPipelineStageFlags2 stage;
+  VkAccessFlags2 access;
+  VkImageLayout layout;
+};
+constexpr ImageUse kSampledDepth{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+
+void depthBarrier(const Commands& commands, VkImage image, const ImageUse& from, const ImageUse& to) {
   const VkImageMemoryBarrier2 barrier{
       .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-      .srcStageMask = fromStage,
-      .srcAccessMask = fromAccess,
-      .dstStageMask = toStage,
-      .dstAccessMask = toAccess,
-      .oldLayout = from,
-      .newLayout = to,
+      .srcStageMask = from.stage,
+      .srcAccessMask = from.access,
+      .dstStageMask = to.stage,
+      .dstAccessMask = to.access,
+      .oldLayout = from.layout,
+      .newLayout = to.layout,
       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
       .image = image,
@@ -88,15 +96,13 @@ void writtenToHost(const Commands& commands) {
 }
 
 void sampledDepthToCopy(const Commands& commands, VkImage image) {
-  depthBarrier(commands, image, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  depthBarrier(commands, image, kSampledDepth,
+               {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL});
 }
 
 void undefinedToSampledDepth(const Commands& commands, VkImage image) {
-  depthBarrier(commands, image, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED,
-               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  depthBarrier(commands, image, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED},
+               kSampledDepth);
 }
 
 void everythingToEverything(const Commands& commands) {

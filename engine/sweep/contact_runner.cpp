@@ -44,6 +44,7 @@ ContactRunner::ContactRunner(const gpu::Owner& owner, const Scene& scene, const 
       scene_(scene),
       options_(options),
       resident_(resident),
+      cpu_(Tier::contact, options.cpuThreads),
       room_(room),
       mostSearches_(mostSearchesOf(owner)) {
   if (needsProof && !isOnCpu()) requireProof(owner);
@@ -206,15 +207,14 @@ void ContactRunner::answerLeft(Flight& flight) {
   const size_t first = left.front(), count = left.size();
   const uint64_t before = cpu_.pairs();
   if (left.back() - first + 1 == count) {  // without gaps
-    cpu_.run(flight.queries.subspan(first, count), scene_.impl(), Tier::contact, options_.cpuThreads,
-             std::span(answers.results).subspan(first, count),
+    cpu_.run(flight.queries.subspan(first, count), scene_.impl(), std::span(answers.results).subspan(first, count),
              answers.lists.empty() ? std::span<Listed>() : std::span(answers.lists).subspan(first, count), flight.stop);
   } else {
     std::vector<Query> queries;
     queries.reserve(count);
     for (const size_t i : left) queries.push_back(flight.queries[i]);
     Answers found = unanswered(queries);
-    cpu_.run(queries, scene_.impl(), Tier::contact, options_.cpuThreads, found.results, found.lists, flight.stop);
+    cpu_.run(queries, scene_.impl(), found.results, found.lists, flight.stop);
     for (size_t k = 0; k < count; ++k) answers.results[left[k]] = found.results[k];
     for (size_t k = 0; k < found.lists.size(); ++k) answers.lists[left[k]] = std::move(found.lists[k]);
   }

@@ -17,7 +17,7 @@ using radar::tools::Tally;
 void printHeader() {
   std::printf("%-13s %7s %6s %6s %6s |", "family", "queries", "hit", "clear", "overl.");
   for (size_t i = 0; i < radar::tools::kFaults; ++i) std::printf(" %12s", nameOf(static_cast<Fault>(i)));
-  std::printf(" | %6s %8s | %11s %9s %8s | %7s %7s\n", "wrong", "error", "pairs", "cpu_pairs", "share", "s", "CPU s");
+  std::printf(" | %6s | %11s %9s %8s | %7s %7s\n", "wrong", "pairs", "cpu_pairs", "share", "s", "CPU s");
 }
 
 void print(const std::string& family, const Tally& t) {
@@ -25,8 +25,7 @@ void print(const std::string& family, const Tally& t) {
   std::printf("%-13s %7llu %6llu %6llu %6llu |", family.c_str(), number(t.queries), number(t.hits), number(t.clear),
               number(t.overlaps));
   for (const uint64_t count : t.faults) std::printf(" %12llu", number(count));
-  std::printf(" | %6llu %8.1e | %11llu %9llu %7.3f%% | %7.2f %7.2f\n", number(t.wrong), std::max(t.late, t.early),
-              number(t.pairs), number(t.cpuPairs),
+  std::printf(" | %6llu | %11llu %9llu %7.3f%% | %7.2f %7.2f\n", number(t.wrong), number(t.pairs), number(t.cpuPairs),
               t.pairs == 0 ? 0.0 : 100.0 * static_cast<double>(t.cpuPairs) / static_cast<double>(t.pairs),
               t.deviceSeconds, t.cpuSeconds);
   std::fflush(stdout);

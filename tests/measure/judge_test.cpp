@@ -41,29 +41,34 @@ TEST_CASE("the exact answer keeps every promise, and whatever is changed in it b
   CHECK(judged([](Result& r) {
           r.status = Status::clear;
           r.t = r.lo = r.hi = INFINITY;
-        }) == "missed");
-  CHECK(judged([](Result& r) { r.status = Status::undecided; }) == "not answered");
-  CHECK(judged([](Result& r) { r.status = Status::overlap; }).starts_with("wrong status"));
-  CHECK(judged([](Result& r) { r.triB ^= 1; }).find("wrong pair") != std::string::npos);
-  CHECK(judged([](Result& r) { r.lo = 2.001; }).find("bracket") != std::string::npos);
-  CHECK(judged([](Result& r) { r.hi = 1.999; }).find("bracket") != std::string::npos);
-  CHECK(judged([](Result& r) { r.t = 2.00001; }).find("late") != std::string::npos);
-  CHECK(judged([](Result& r) { r.point[2] += 0.01; }).find("point") != std::string::npos);
-  CHECK(judged([](Result& r) { r.normal[2] = -r.normal[2]; }).find("normal") != std::string::npos);
+        }).starts_with("missed"));
+  const auto next = [](double& x) { x = std::nextafter(x, INFINITY); };
+  CHECK(judged([](Result& r) { r.status = Status::invalid; }) == "not answered, wrong status");
+  CHECK(judged([](Result& r) { r.status = Status::undecided; }) == "wrong status");
+  CHECK(judged([](Result& r) { r.status = Status::overlap; }) == "wrong status");
+  CHECK(judged([](Result& r) { r.detected = Detected::notLooked; }) == "wrong status");
+  CHECK(judged([](Result& r) { r.triB ^= 1; }) == "wrong pair");
+  CHECK(judged([](Result& r) { r.featureA = Feature::vertex; }) == "wrong pair");
+  CHECK(judged([&](Result& r) { next(r.lo); }) == "bracket");
+  CHECK(judged([&](Result& r) { next(r.hi); }) == "bracket");
+  CHECK(judged([&](Result& r) { next(r.t); }) == "late");
+  CHECK(judged([&](Result& r) { next(r.fraction); }) == "late");
+  CHECK(judged([&](Result& r) { next(r.point[2]); }) == "point");
+  CHECK(judged([&](Result& r) { next(r.gap); }) == "point");
+  CHECK(judged([](Result& r) { r.normal[2] = NAN; }) == "normal");
 }
 
-TEST_CASE("a decision says nothing but whether there is a contact") {
+TEST_CASE("a decision in mode sampled says nothing but whether there is a contact") {
   const Boxes boxes;
   Query query = boxes.query;
   query.anyHit = true;
   Result decision = test::answer(boxes.scene, query);
-  decision.tier = Tier::contact;
-  CHECK(judge(boxes.scene, query, Mode::contact, decision, boxes.exact).words().empty());
+  CHECK(judge(boxes.scene, query, Mode::sampled, decision, boxes.exact).words().empty());
   decision.object = 0;
-  CHECK(judge(boxes.scene, query, Mode::contact, decision, boxes.exact)[Fault::wrongPair]);
+  CHECK(judge(boxes.scene, query, Mode::sampled, decision, boxes.exact)[Fault::wrongPair]);
   decision.status = Status::overlap;
-  CHECK(judge(boxes.scene, query, Mode::contact, decision, boxes.exact)[Fault::wrongStatus]);
-  CHECK_FALSE(judge(boxes.scene, query, Mode::contact, boxes.exact, boxes.exact).right());
+  CHECK(judge(boxes.scene, query, Mode::sampled, decision, boxes.exact)[Fault::wrongStatus]);
+  CHECK_FALSE(judge(boxes.scene, query, Mode::sampled, boxes.exact, boxes.exact).right());
 }
 
 TEST_CASE("an upper bound before the exact t, a lower one, and a contact or a clear that is none are violations") {

@@ -152,8 +152,7 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
       tally.cpuPairs += found.stats.cpuPairs;
       for (size_t i = 0; i < queries.size(); ++i) {
         const Result &result = found.results[i], &right = exact.results[i];
-        Verdict verdict =
-            range.steps ? judgeByBits(result, right) : judgeAs(asked[a], stage_->scene, queries[i], result, right);
+        Verdict verdict = judgeAs(asked[a], stage_->scene, queries[i], result, right);
         verdict.set(Fault::wrongList, !sameLists(found, exact, i));
         tally.add(verdict, right);
         if (asked[a].paper || verdict.right()) continue;

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <bitset>
-#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -18,21 +17,21 @@ bool meets(const Result& result);
 enum class Fault {
   missed,       ///< no contact, where there is one within D
   falseHit,     ///< a contact, where there is none within D
-  unanswered,   ///< invalid; undecided in mode contact
+  unanswered,   ///< invalid
   wrongStatus,  ///< hit for overlap or the other way, or not detected
   wrongPair,    ///< the object or a triangle
   wrongList,    ///< the objects that are skipped, or the contacts listed
-  bracket,      ///< t* is not in [lo, hi], t is not, or hi is beyond D; in mode contact, wider than 1e-9 units
-  late,         ///< in mode contact: t is off by more than 1e-9 units, or the fraction by 1e-9
-  point,        ///< not on both surfaces at the moment of contact, or missing
-  normal        ///< not a unit vector against the motion, or present where the exact answer has none
+  bracket,      ///< t* is not in [lo, hi], or hi is beyond D; in mode contact: lo or hi is another
+  late,         ///< in mode contact: t or the fraction is another
+  point,        ///< likewise the point or the gap
+  normal        ///< likewise the normal
 };
 inline constexpr size_t kFaults = 10;
 const char* nameOf(Fault fault);
 
 class Verdict {
  public:
-  bool unseen = false;  ///< undecided, where there is a contact: a fault in mode contact only
+  bool unseen = false;  ///< in mode sampled: undecided, where there is a contact
   bool found = false;   ///< a contact, where there is one
   double error = 0;     ///< t - t* of a contact that was found, in units
 
@@ -56,11 +55,10 @@ Verdict judge(const Result& result, const Result& exact, double unit);
 /// What errors are relative to: max(size of the sensor, t*).
 double unitOf(const Scene& scene, const Query& query, const Result& exact);
 
-/// All that an answer promises, in that mode and with its `decide`. In mode sampled `lo` must be 0, and pair, t,
-/// point and normal are not judged.
+/// All that an answer promises: in mode contact the bits of `exact`, the CPU's to the same query, but for the tier and
+/// the sign of 0. In mode sampled `exact` is the CPU's first contact, `lo` must be 0, and pair, t, point and normal are
+/// not judged.
 Verdict judge(const Scene& scene, const Query& query, Mode mode, const Result& result, const Result& exact);
-/// Of an answer that has the CPU's bits, as those to queries with a clearance and those of a step.
-Verdict judgeByBits(const Result& result, const Result& exact);
 
 /// Verdicts added up, and what the answers cost.
 struct Tally {

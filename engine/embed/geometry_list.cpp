@@ -67,8 +67,8 @@ gpu::Moved movedOf(ObjectId id, const Scene::Impl& scene) {
 // Adds the objects that a host moves, and marks them.
 void addGroup(MovedList& list, const MovedObjects& group, uint32_t firstByte, std::vector<bool>& isNamed,
               const Scene::Impl& scene) {
-  for (size_t k = 0; k < group.objects.size(); ++k) {
-    const ObjectId id = group.objects[k];
+  for (size_t k = 0; k < countOf(group); ++k) {
+    const ObjectId id = objectOf(group, k);
     if (id >= scene.objects.size() || !scene.objects[id].used) {
       throw Error("geometry: object " + std::to_string(id) + " does not exist");
     }
@@ -78,8 +78,8 @@ void addGroup(MovedList& list, const MovedObjects& group, uint32_t firstByte, st
     moved.firstByte = static_cast<uint32_t>(firstByte + k * group.stride);
     moved.format = {group.layout.row, group.layout.column};
     list.moved.push_back(moved);
+    list.named.push_back(id);
   }
-  list.named.insert(list.named.end(), group.objects.begin(), group.objects.end());
 }
 
 // Adds the objects that stand, but whose meshes are deformed without bounds.
@@ -133,11 +133,13 @@ std::vector<uint32_t> numbersOf(const std::vector<bool>& marks) {
 
 // Whether the groups name these objects.
 bool areNamed(std::span<const ObjectId> named, std::span<const MovedObjects> groups) {
-  return std::ranges::all_of(groups, [&](const MovedObjects& group) {
-    const auto first = named.first(group.objects.size());
-    named = named.subspan(group.objects.size());
-    return std::ranges::equal(first, group.objects);
-  });
+  size_t next = 0;
+  for (const MovedObjects& group : groups) {
+    for (size_t k = 0; k < countOf(group); ++k) {
+      if (named[next++] != objectOf(group, k)) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -169,7 +171,7 @@ void update(MovedList& list, const HostGeometry& geometry, std::span<const uint3
   key.insert(key.end(), meshes.begin(), meshes.end());
   for (size_t i = 0; i < geometry.objects.size(); ++i) {
     const MovedObjects& group = geometry.objects[i];
-    key.insert(key.end(), {firstBytes[i], group.objects.size(), group.stride, group.layout.row, group.layout.column});
+    key.insert(key.end(), {firstBytes[i], countOf(group), group.stride, group.layout.row, group.layout.column});
   }
   if (list.key == key && areNamed(list.named, geometry.objects)) return;
   list = {};

@@ -36,6 +36,14 @@ struct MovedList {
   bool isUploaded = false;
 };
 
+/// How many objects the host moves together, and the k-th of them.
+inline size_t countOf(const MovedObjects& group) {
+  return group.objects.size() + group.count;
+}
+inline ObjectId objectOf(const MovedObjects& group, size_t k) {
+  return group.objects.empty() ? static_cast<ObjectId>(group.firstObject + k) : group.objects[k];
+}
+
 /// Lists valid geometry, or leaves `list` as it is if it would be the same. If this throws, the list is empty.
 /// `firstBytes`: where the copied words have the positions of each mesh.
 void update(DeformedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,

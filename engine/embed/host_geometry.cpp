@@ -42,6 +42,7 @@ std::string validate(const HostGeometry& geometry, const Scene& scene) {
   if (repeats(std::move(meshes))) return "meshes: expected each at most once";
   for (const MovedObjects& moved : geometry.objects) {
     if (moved.transforms == VK_NULL_HANDLE) return "objects: expected a buffer of transforms";
+    if (!moved.objects.empty() && moved.count != 0) return "objects: expected a list or a count, got both";
     if (const uint64_t least = extentOf(moved.layout); moved.stride < least) {
       return "objects: stride: expected at least " + std::to_string(least) + " bytes, got " +
              std::to_string(moved.stride);
@@ -92,7 +93,7 @@ std::vector<uint32_t> HostGeometryPass::copyFrom(const HostGeometry& geometry, c
          spanOf(from, mesh.hostVertex(mesh.vertexCount() - 1) + 1));
   }
   for (const MovedObjects& moved : geometry.objects) {
-    copy(moved.transforms, moved.first, spanOf(moved.stride, moved.objects.size(), extentOf(moved.layout)));
+    copy(moved.transforms, moved.first, spanOf(moved.stride, countOf(moved), extentOf(moved.layout)));
   }
   // And the word after the last that a shader may load.
   words_.reserve(end / sizeof(uint32_t) + 1);
@@ -103,7 +104,7 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
   run_.begin();
   upload_.begin();
   const bool isEmpty = geometry.meshes.empty() && std::ranges::all_of(geometry.objects, [](const MovedObjects& moved) {
-                         return moved.objects.empty();
+                         return countOf(moved) == 0;
                        });
   if (isEmpty) {
     deformed_ = {};

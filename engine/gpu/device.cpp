@@ -95,6 +95,12 @@ std::vector<std::string> unsupportedReasons(const HostDevice& host, Mode mode) {
   return gpu::unsupportedReasons(gpu::factsOf(vk, host.physicalDevice), mode);
 }
 
+Requirements requirements(const HostDevice& host) {
+  gpu::Api vk(host.getInstanceProcAddr);
+  vk.load(host.instance);
+  return gpu::requirements(host.doubles, host.sampled && gpu::factsOf(vk, host.physicalDevice).outputLayer);
+}
+
 namespace {
 
 std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks) {

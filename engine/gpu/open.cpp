@@ -177,6 +177,16 @@ VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>&
   return best;
 }
 
+HostDevice hostOf(const gpu::Api& vk, VkInstance instance, const std::vector<VkPhysicalDevice>& devices,
+                  uint32_t index) {
+  HostDevice host{.instance = instance, .physicalDevice = choose(vk, devices, index)};
+  host.queueFamily = gpu::queueFamilyOf(vk, host.physicalDevice);
+  const gpu::DeviceFacts facts = gpu::factsOf(vk, host.physicalDevice);
+  host.doubles = facts.doubles;
+  host.sampled = gpu::unsupportedReasons(facts, Mode::sampled).empty();
+  return host;
+}
+
 }  // namespace
 
 // Threads that a driver starts have this one's environment.
@@ -190,6 +200,17 @@ std::vector<DeviceReport> listDevices() {
   return reports;
 }
 
+HostDevice hostOf(VkInstance instance, VkPhysicalDevice physicalDevice, PFN_vkGetInstanceProcAddr getInstanceProcAddr) {
+  const FloatEnvironment floats;
+  if (instance == VK_NULL_HANDLE) throw Error("hostOf: expected an instance, got null");
+  gpu::Api vk(getInstanceProcAddr);
+  vk.load(instance);
+  const bool isGiven = physicalDevice != VK_NULL_HANDLE;
+  HostDevice host = hostOf(vk, instance, isGiven ? std::vector{physicalDevice} : physicalDevices(vk, instance), kNone);
+  host.getInstanceProcAddr = getInstanceProcAddr;
+  return host;
+}
+
 namespace {
 
 struct Opened {
@@ -200,20 +221,16 @@ struct Opened {
 
 Opened openHandles(const DeviceOptions& options, bool wantsStatistics) {
   auto owned = openInstance(options.onValidation);
-  HostDevice host{.instance = owned->instance, .debugNames = options.onValidation != nullptr};
+  HostDevice host = hostOf(owned->vk, owned->instance, physicalDevices(owned->vk, owned->instance), options.index);
+  host.doubles = options.doubles && host.doubles;
+  host.debugNames = options.onValidation != nullptr;
   host.onCompiling = options.onCompiling;
-  host.physicalDevice = choose(owned->vk, physicalDevices(owned->vk, owned->instance), options.index);
-  host.queueFamily = gpu::queueFamilyOf(owned->vk, host.physicalDevice);
   const float priority = 1.0f;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = host.queueFamily,
                                       .queueCount = 1,
                                       .pQueuePriorities = &priority};
-  const gpu::DeviceFacts facts = gpu::factsOf(owned->vk, host.physicalDevice);
-  host.doubles = options.doubles && facts.doubles;
-  host.sampled = gpu::unsupportedReasons(facts, Mode::sampled).empty();
-  Requirements needed = requirements(host.sampled ? Mode::sampled : Mode::contact, host.doubles);
-  if (!facts.outputLayer) needed.vulkan12.shaderOutputLayer = VK_FALSE;
+  Requirements needed = requirements(host);
   const std::vector<VkExtensionProperties> available = extensionsOf(owned->vk, host.physicalDevice);
   std::vector<const char*> extensions;
   // Such a driver wants to be told that the application knows.

@@ -214,11 +214,11 @@ const void* Requirements::chain(void* next) {
   return first;
 }
 
-Requirements requirements(Mode mode, bool doubles) {
+Requirements gpu::requirements(bool doubles, bool outputLayer) {
   Requirements needed;
   needed.core.features.shaderFloat64 = doubles ? VK_TRUE : VK_FALSE;
-  needed.vulkan12.shaderOutputLayer = mode == Mode::sampled ? VK_TRUE : VK_FALSE;
-  for (const gpu::Requirement& required : gpu::kRequired) required.in(needed) = VK_TRUE;
+  needed.vulkan12.shaderOutputLayer = outputLayer ? VK_TRUE : VK_FALSE;
+  for (const Requirement& required : kRequired) required.in(needed) = VK_TRUE;
   return needed;
 }
 

@@ -42,6 +42,9 @@ std::vector<DeviceLimit> limitsOf(const VkPhysicalDeviceLimits& limits, const Su
 /// "1.3.224".
 std::string versionText(uint32_t version);
 
+/// What a device must have enabled, and these two optional features.
+Requirements requirements(bool doubles, bool outputLayer);
+
 /// One line per item missing for `mode`; empty if the device is usable.
 std::vector<std::string> unsupportedReasons(const DeviceFacts& facts, Mode mode);
 

@@ -147,6 +147,56 @@ TEST_CASE("two sweepers on one device follow the same scene") {
   }
 }
 
+TEST_CASE("hostOf() tells what a physical device offers, and requirements() what of that to enable") {
+  const test::Host made;
+  const HostDevice host = hostOf(made.handles.instance, made.handles.physicalDevice);
+  CHECK(host.device == VK_NULL_HANDLE);
+  CHECK(host.queue == VK_NULL_HANDLE);
+  VkPhysicalDeviceFeatures has;
+  vkGetPhysicalDeviceFeatures(host.physicalDevice, &has);
+  CHECK(host.doubles == (has.shaderFloat64 == VK_TRUE));
+  CHECK(host.sampled == unsupportedReasons(host, Mode::sampled).empty());
+  uint32_t count = host.queueFamily + 1;
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(host.physicalDevice, &count, families.data());
+  REQUIRE(count == families.size());
+  CHECK((families.back().queueFlags & VK_QUEUE_COMPUTE_BIT) != 0);
+  for (const bool wants : {false, true}) {
+    HostDevice wanted = host;
+    wanted.doubles = wanted.sampled = wants;
+    const Requirements needed = requirements(wanted);
+    CHECK(needed.core.features.shaderFloat64 == (wants ? VK_TRUE : VK_FALSE));
+    CHECK(needed.vulkan12.shaderOutputLayer <= (wants ? VK_TRUE : VK_FALSE));
+    CHECK(needed.vulkan12.scalarBlockLayout == VK_TRUE);
+  }
+  // Without a device of the host's choice it is the one that would be opened.
+  VkPhysicalDeviceProperties best;
+  vkGetPhysicalDeviceProperties(hostOf(made.handles.instance).physicalDevice, &best);
+  CHECK(best.deviceName == Device::open().name());
+}
+
+TEST_CASE("hostOf() refuses no instance, and a device that lacks what mode contact needs, with reasons") {
+  CHECK_THROWS_WITH(hostOf(VK_NULL_HANDLE), "hostOf: expected an instance, got null");
+  const test::Host made;
+  const PFN_vkGetInstanceProcAddr withoutQueues = [](VkInstance instance, const char* name) {
+    const PFN_vkGetPhysicalDeviceQueueFamilyProperties none = [](VkPhysicalDevice, uint32_t* count,
+                                                                 VkQueueFamilyProperties*) { *count = 0; };
+    return std::string(name) == "vkGetPhysicalDeviceQueueFamilyProperties" ? reinterpret_cast<PFN_vkVoidFunction>(none)
+                                                                           : vkGetInstanceProcAddr(instance, name);
+  };
+  for (const VkPhysicalDevice device : {made.handles.physicalDevice, VkPhysicalDevice{}}) {
+    std::vector<std::string> reasons;
+    try {
+      hostOf(made.handles.instance, device, withoutQueues);
+    } catch (const Error& error) {
+      CHECK_THAT(error.what(), test::StartsWith("no usable Vulkan device"));
+      reasons = error.reasons;
+    }
+    REQUIRE_FALSE(reasons.empty());
+    CHECK_THAT(reasons[0], test::StartsWith("device 0, ") && test::Contains("queue"));
+  }
+}
+
 TEST_CASE("opening a device that does not exist throws and names its number") {
   CHECK_THROWS_WITH(Device::open({.index = 1000}), test::Contains("device 1000 does not exist"));
 }

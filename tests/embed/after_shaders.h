@@ -1,15 +1,16 @@
 #pragma once
 
+#include <radar/recorder.h>
 #include <vulkan/vulkan.h>
 
-// Commands of that stage and access, recorded after this, see what compute shaders have written before.
-inline void afterShaders(VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkAccessFlags2 access) {
+// Commands with that access, recorded after this, see what compute shaders have written before.
+inline void afterShaders(VkCommandBuffer commands, radar::Access then) {
   VkMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  barrier.dstStageMask = stage;
-  barrier.dstAccessMask = access;
+  barrier.srcStageMask = radar::Recorder::kWrites.stages;
+  barrier.srcAccessMask = radar::Recorder::kWrites.access;
+  barrier.dstStageMask = then.stages;
+  barrier.dstAccessMask = then.access;
   VkDependencyInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.memoryBarrierCount = 1;

@@ -82,27 +82,23 @@ Host::Host(Mode mode, uint32_t index) {
     return !isTested(properties.deviceName);
   });
   if (all.empty()) throw Error("the host finds none of the tested devices");
-  handles.physicalDevice = all[index % all.size()];
-  const float priority = 1;
-  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                      .queueFamilyIndex = 0,
-                                      .queueCount = 1,
-                                      .pQueuePriorities = &priority};
-  VkPhysicalDeviceVulkan12Features more{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &more};
-  vkGetPhysicalDeviceFeatures2(handles.physicalDevice, &features);
-  handles.doubles = features.features.shaderFloat64 == VK_TRUE && wantsDoubles();
-  handles.sampled = mode == Mode::sampled;
+  handles = hostOf(handles.instance, all[index % all.size()]);
+  handles.doubles = handles.doubles && wantsDoubles();
+  handles.sampled = handles.sampled && mode == Mode::sampled;
   handles.debugNames = true;
   handles.getInstanceProcAddr = watchedLoader();
-  Requirements needed = requirements(mode, handles.doubles);
-  needed.vulkan12.shaderOutputLayer &= more.shaderOutputLayer;  // optional
+  const float priority = 1;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = handles.queueFamily,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  Requirements needed = requirements(handles);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = needed.chain(),
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue};
   require(vkCreateDevice(handles.physicalDevice, &info, nullptr, &handles.device), "vkCreateDevice");
-  vkGetDeviceQueue(handles.device, 0, 0, &handles.queue);
+  vkGetDeviceQueue(handles.device, handles.queueFamily, 0, &handles.queue);
   handles.memory = separateAllocations(handles);
 }
 

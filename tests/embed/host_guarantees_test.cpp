@@ -16,7 +16,7 @@
 struct Moving {
   radar::MeshId body;
   VkBuffer skinned, transforms;
-  std::vector<radar::ObjectId> crates;
+  radar::ObjectId firstCrate;
 };
 void addMoving(radar::Scene& scene, const radar::Device& device, const radar::HostMesh& restPose, radar::MeshId crate,
                Moving& moving);
@@ -237,8 +237,8 @@ TEST_CASE("a host that writes geometry in the same command buffer without the do
     const VkMemoryBarrier2 writtenToCopy{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                          .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                          .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                         .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                         .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT};
+                                         .dstStageMask = Recorder::kReads.stages,
+                                         .dstAccessMask = Recorder::kReads.access};
     const VkDependencyInfo info{
         .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &writtenToCopy};
     if (withBarrier) commands->CmdPipelineBarrier2(commands, &info);
@@ -272,7 +272,7 @@ struct SkinningFrames {
     for (uint32_t i = 0; i < 3; ++i) bindings.setBuffer(i, all[i]->get());
 
     const MeshId crate = test::addMesh(scene, test::triangle());
-    moving = {.body = kNone, .skinned = skinned.get(), .transforms = transforms.get(), .crates = {}};
+    moving = {.body = kNone, .skinned = skinned.get(), .transforms = transforms.get(), .firstCrate = kNone};
     addMoving(scene, engine, {.positions = {.buffer = atRest.get(), .stride = 32}, .vertexCount = 3}, crate, moving);
     for (const double x : {0, 10}) {
       queries.push_back({.mesh = crate, .worldFromMesh = at(x, 0, -3), .direction = {0, 0, 1}, .distance = 20});
@@ -290,7 +290,7 @@ struct SkinningFrames {
     submission.submitAndWait();
     for (const Result& result : recorder->read().results) CHECK(result.t == 3 + double{lift});
   }
-  static constexpr VkBufferUsageFlags kWritten = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  static constexpr VkBufferUsageFlags kWritten = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | kHostBufferUsage;
   gpu::Buffer atRest, skinned, transforms;
   test::Bindings bindings;
   gpu::Pipeline skin;

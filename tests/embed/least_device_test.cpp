@@ -71,7 +71,10 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL loaderWithoutOutputLayer(VkInstance ins
 
 struct LeastDevice {
   LeastDevice() {
-    host.handles.getInstanceProcAddr = leastLoader;
+    const HostDevice offered = hostOf(host.handles.instance, host.handles.physicalDevice, leastLoader);
+    CHECK_FALSE(offered.doubles);
+    CHECK_FALSE(offered.sampled);
+    host.handles.getInstanceProcAddr = offered.getInstanceProcAddr;
     host.handles.doubles = false;
   }
   test::Host host{Mode::contact};
@@ -158,6 +161,7 @@ TEST_CASE("a device without shaderOutputLayer gives the same answers and picture
   test::Host host(Mode::contact);  // does not enable the feature, so that validation would report its use
   host.handles.sampled = true;
   host.handles.getInstanceProcAddr = loaderWithoutOutputLayer;
+  CHECK(requirements(host.handles).vulkan12.shaderOutputLayer == VK_FALSE);
   const Device least = Device::adopt(host.handles);
   REQUIRE(least.supports(Mode::sampled));
   CHECK_FALSE(least.impl().choosesLayers);

@@ -14,17 +14,8 @@ int main() {
   instanceInfo.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   instanceInfo.pApplicationInfo = &application;
   if (vkCreateInstance(&instanceInfo, nullptr, &instance) != VK_SUCCESS) return 1;
-  radar::HostDevice host{.instance = instance, .getInstanceProcAddr = vkGetInstanceProcAddr};
-  uint32_t count = 1;
-  vkEnumeratePhysicalDevices(instance, &count, &host.physicalDevice);
-  for (const std::string& reason : radar::unsupportedReasons(host, radar::Mode::contact))
-    std::printf("this device %s\n", reason.c_str());
-
-  // Without doubles, a Recorder leaves every contact to the CPU.
-  VkPhysicalDeviceFeatures has;
-  vkGetPhysicalDeviceFeatures(host.physicalDevice, &has);
-  host.doubles = has.shaderFloat64 == VK_TRUE;
-  radar::Requirements needed = radar::requirements(radar::Mode::contact, host.doubles);
+  radar::HostDevice host = radar::hostOf(instance, VK_NULL_HANDLE, vkGetInstanceProcAddr);
+  radar::Requirements needed = radar::requirements(host);
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{};
   queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

@@ -6,6 +6,7 @@
 #include "embed/on_device_scene.h"
 #include "support/buffer_words.h"
 #include "support/catch.h"
+#include "support/small_scenes.h"
 
 namespace {
 
@@ -77,6 +78,23 @@ TEST_CASE(
   MovedWorld world(
       4000, 5, {1, 40, 100}, [](ObjectId id) { return id % 3 != 0; }, [](ObjectId id) { return id % 50 == 1; });
   checkAllAnswered(outcomesOf(world, 3, nothing), 3);
+}
+
+TEST_CASE("a host names moved objects by range, in each recording another one") {
+  Scene scene;
+  const MeshId mesh = test::addBox(scene);
+  for (int i = 0; i < 4; ++i) scene.addObject({.mesh = mesh, .worldFromMesh = test::at(10 * i, 50, 0)});
+  const float places[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9};
+  const auto bytes = std::as_bytes(std::span(places));
+  const test::OnDevice buffer({bytes.begin(), bytes.end()});
+  Recorder recorder(test::device(), scene);
+  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 20};
+  for (const ObjectId first : {0u, 2u, 1u}) {
+    const MovedObjects moved{.transforms = buffer.get(), .firstObject = first, .count = 2};
+    const Result nearest = test::execute(recorder, std::vector{query}, {.objects = {&moved, 1}}).at(0);
+    CHECK(nearest.object == first);
+    CHECK(nearest.t == 6);
+  }
 }
 
 TEST_CASE("an object that takes another's number between two recordings is moved with its own mesh and mask") {

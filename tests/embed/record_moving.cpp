@@ -1,5 +1,4 @@
 #include <span>
-#include <vector>
 
 #include <radar/recorder.h>
 
@@ -10,7 +9,7 @@ struct Moving {
   radar::MeshId body;
   VkBuffer skinned;     // the character's vertices, 32 bytes each, a float3 position first
   VkBuffer transforms;  // a VkTransformMatrixKHR for each crate
-  std::vector<radar::ObjectId> crates;
+  radar::ObjectId firstCrate;
 };
 
 // Called while loading. `restPose` holds the character as it was modelled.
@@ -18,14 +17,15 @@ void addMoving(radar::Scene& scene, const radar::Device& device, const radar::Ho
                Moving& moving) {
   moving.body = radar::addMesh(scene, device, restPose);
   scene.addObject({.mesh = moving.body});
-  for (int i = 0; i < 20; ++i) moving.crates.push_back(scene.addObject({.mesh = crate}));
+  moving.firstCrate = scene.objectLimit();
+  for (int i = 0; i < 20; ++i) scene.addObject({.mesh = crate});
 }
 
 // Called once per frame, after the compute shaders have been recorded. The queries see what these shaders write.
 void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
                   const Moving& moving) {
-  afterShaders(commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+  afterShaders(commands, radar::Recorder::kReads);
   const radar::DeformedMesh body{moving.body, {.buffer = moving.skinned, .stride = 32}};
-  const radar::MovedObjects crates{.transforms = moving.transforms, .objects = moving.crates};
+  const radar::MovedObjects crates{.transforms = moving.transforms, .firstObject = moving.firstCrate, .count = 20};
   recorder.record(commands, queries, {.meshes = {&body, 1}, .objects = {&crates, 1}});
 }

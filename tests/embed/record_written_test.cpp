@@ -65,7 +65,7 @@ class Asker {
   }
 
  private:
-  static constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  static constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | kHostBufferUsage;
   const Device::Impl& impl_;
   gpu::Buffer queries_, number_;
   test::Bindings bindings_;

@@ -123,6 +123,12 @@ TEST_CASE("record refuses bad geometry, and names what is wrong") {
   all.refuseObjects({.transforms = buffer, .objects = missing}, "object 9 does not exist");
   all.refuseObjects({.transforms = buffer, .objects = same}, "objects: expected each at most once");
   all.refuseObjects({.objects = one}, "expected a buffer of transforms");
+  all.refuseObjects({.transforms = buffer, .firstObject = 7, .count = 2}, "object 8 does not exist");
+  all.refuseObjects({.transforms = buffer, .objects = one, .count = 1},
+                    "objects: expected a list or a count, got both");
+  const MovedObjects overlapping[] = {{.transforms = buffer, .firstObject = 2, .count = 2},
+                                      {.transforms = buffer, .firstObject = 3, .count = 2}};
+  all.refuse(all.good, "objects: expected each at most once", {.objects = overlapping});
   const auto refuseStride = [&](VkDeviceSize stride, const TransformLayout& layout, const std::string& why) {
     all.refuseObjects({.transforms = buffer, .stride = stride, .objects = both, .layout = layout}, why);
   };

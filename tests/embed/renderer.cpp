@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "spirv/read_results_comp.h"
+#include "spirv/read_results_comp_RADAR_NO_DOUBLES.h"
 #include "support/catch.h"
 #include "workloads/shapes.h"
 
@@ -14,7 +15,10 @@ Renderer::Renderer(const Device& device)
     : device_(device.impl()),
       submission_(device_, false),
       bindings_(device_, 2, sizeof(uint32_t)),
-      pipeline_(gpu::computePipeline(device_, bindings_.layout(), k_read_results_comp, "host's pass")),
+      pipeline_(gpu::computePipeline(device_, bindings_.layout(),
+                                     device.handles().doubles ? std::span<const uint32_t>(k_read_results_comp)
+                                                              : k_read_results_comp_RADAR_NO_DOUBLES,
+                                     "host's pass")),
       shaderResults_(device_, "shader results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
   shaderResults_.reserve(4096 * sizeof(ShaderResult));
   bindings_.setBuffer(1, shaderResults_.get());
@@ -40,11 +44,16 @@ bool checkShaderResult(const Renderer::ShaderResult& found, const Result& expect
     const bool isHit = found.status == static_cast<uint32_t>(Status::hit);
     CHECK((isHit ? expected.status == Status::hit : found.status == static_cast<uint32_t>(Status::undecided)));
     CHECK_FALSE(found.t > expected.t);
+    CHECK((found.free >= 0 && double{found.free} <= std::min(expected.hi, 3.0)));
     return true;
   }
   CHECK(found.flags == 0);
   CHECK(found.status == static_cast<uint32_t>(expected.status));
   CHECK(found.object == expected.object);
+  // The nearest float that is not above.
+  const double free = expected.status == Status::invalid ? 0.0 : std::min(expected.lo, 3.0);
+  CHECK(double{found.free} <= free);
+  CHECK(double{std::nextafter(found.free, 4.0f)} > free);
   if (!std::isfinite(expected.t)) {
     CHECK(std::isinf(found.t) == std::isinf(expected.t));
   } else {

@@ -28,6 +28,7 @@ class Renderer {
   struct ShaderResult {
     uint32_t status, object, flags;
     float t;
+    float free;  ///< of a distance of 3
     float normal[3];
   };
 

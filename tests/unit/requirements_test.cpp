@@ -134,23 +134,23 @@ TEST_CASE("the required descriptors per stage are the most that a shader binds, 
   CHECK(mostOf({kTexels, kImage}, Mode::sampled) <= mostOf({kTexels, kImage}, Mode::contact));
 }
 
-TEST_CASE("requirements() lists the features of a mode, and doubles only on request") {
-  for (const Mode mode : {Mode::contact, Mode::sampled}) {
-    const Requirements needed = requirements(mode, false);
+TEST_CASE("the requirements list the features of every device, and optional ones only on request") {
+  for (const bool outputLayer : {false, true}) {
+    const Requirements needed = gpu::requirements(false, outputLayer);
     CHECK(needed.core.features.shaderFloat64 == VK_FALSE);
-    CHECK(needed.vulkan12.shaderOutputLayer == (mode == Mode::sampled ? VK_TRUE : VK_FALSE));
+    CHECK(needed.vulkan12.shaderOutputLayer == (outputLayer ? VK_TRUE : VK_FALSE));
     CHECK(needed.vulkan12.scalarBlockLayout == VK_TRUE);
     CHECK(needed.vulkan13.synchronization2 == VK_TRUE);
     CHECK(needed.vulkan13.maintenance4 == VK_TRUE);
     CHECK(needed.vulkan13.subgroupSizeControl == VK_TRUE);
     CHECK(needed.vulkan13.computeFullSubgroups == VK_TRUE);
-    CHECK(requirements(mode, true).core.features.shaderFloat64 == VK_TRUE);
+    CHECK(gpu::requirements(true, outputLayer).core.features.shaderFloat64 == VK_TRUE);
   }
 }
 
 TEST_CASE("the requirements are chained in front of a host's own features") {
   VkPhysicalDeviceRobustness2FeaturesEXT own{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ROBUSTNESS_2_FEATURES_EXT};
-  Requirements needed = requirements(Mode::contact, false);
+  Requirements needed = gpu::requirements(false, false);
   CHECK(needed.chain(&own) == &needed.core);
   CHECK(needed.core.pNext == &needed.vulkan12);
   CHECK(needed.vulkan12.pNext == &needed.vulkan13);
@@ -162,7 +162,7 @@ TEST_CASE("the requirements are set in the host's own structs, and the other fea
                                          .dynamicRendering = VK_TRUE};
   VkPhysicalDeviceFeatures2 own{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &own13};
   own.features.samplerAnisotropy = VK_TRUE;
-  Requirements needed = requirements(Mode::sampled, true);
+  Requirements needed = gpu::requirements(true, true);
   CHECK(needed.chain(&own) == &needed.vulkan12);
   CHECK(needed.vulkan12.pNext == &own);
   CHECK(own.pNext == &own13);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <numeric>
 
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
@@ -247,9 +246,7 @@ void moveAll(const Device& device, uint32_t boxes, Extent extent, Json& report) 
     std::swap(instances[i].worldFromMesh, instances[random.below(static_cast<uint32_t>(i) + 1)].worldFromMesh);
   }
   replaceBy(workload, 0, exchanged);
-  std::vector<ObjectId> objects(instances.size());
-  std::iota(objects.begin(), objects.end(), 0);
-  const MovedObjects moved{.transforms = transforms.buffer.get(), .objects = objects};
+  const MovedObjects moved{.transforms = transforms.buffer.get(), .count = static_cast<uint32_t>(instances.size())};
   Recorder still(device, standing, kCapacity), all(device, moving, kCapacity), far(device, exchanged, kCapacity);
   gpu::Submission submission(device.impl(), false);
   const Batch batch = batchesOf(workload.queries).front();

@@ -75,7 +75,7 @@ struct MemoryUse {
 
 /// Vulkan handles that the host owns. All outlive the Device made from them. `device` has the features of
 /// requirements() enabled. `queue` belongs to family `queueFamily`, which supports compute and, for mode sampled,
-/// graphics.
+/// graphics. hostOf() begins one.
 ///
 /// `queue` may be null if the host makes every submission itself. The engine then never submits: a Recorder works in
 /// full; a Sweeper, a Pool and addMesh() of a HostMesh throw Error. Without a queue the device's doubles cannot be
@@ -88,7 +88,7 @@ struct HostDevice {
   uint32_t queueFamily = 0;
   VkQueue queue = VK_NULL_HANDLE;
   bool doubles = true;      ///< shaderFloat64 is enabled on `device`
-  bool sampled = false;     ///< the features of requirements(Mode::sampled, ...) that it has are enabled on `device`
+  bool sampled = false;     ///< for mode sampled: shaderOutputLayer is enabled on `device`, if the device has it
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
   /// VK_KHR_shader_subgroup_uniform_control_flow and its feature are enabled on `device`: optional, and then used.
   bool uniformControlFlow = false;
@@ -123,10 +123,15 @@ struct Requirements {
   /// struct of that version. Valid until this object moves or ends.
   const void* chain(void* next = nullptr);
 };
-/// `mode`: sampled needs everything that contact needs, and graphics. Clear shaderOutputLayer if the device lacks it:
-/// mode sampled then draws each sensor in a render pass of its own. `doubles`: includes shaderFloat64, which is
-/// optional but lets mode contact leave less to the CPU.
-RADAR_API Requirements requirements(Mode mode, bool doubles);
+/// What a host knows of its physical device before it makes a VkDevice: the arguments; `queueFamily`, the first with
+/// graphics and compute, else the first with compute; and whether the device offers `doubles`, which let mode contact
+/// leave less to the CPU, and mode `sampled`. `physicalDevice`: null for the best usable one, as DeviceOptions::index
+/// says. Throws, with reasons, if it lacks what mode contact needs, or no device is usable.
+RADAR_API HostDevice hostOf(VkInstance instance, VkPhysicalDevice physicalDevice = VK_NULL_HANDLE,
+                            PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr);
+/// Of mode contact, and of `doubles` and `sampled` where those are true. Also reads `instance`, `physicalDevice` and
+/// `getInstanceProcAddr`. Without shaderOutputLayer, mode sampled draws each sensor in a render pass of its own.
+RADAR_API Requirements requirements(const HostDevice& host);
 
 /// Why a host's physical device cannot be used for `mode`: one line per missing item, empty if it can. Reads only
 /// `instance`, `physicalDevice` and `getInstanceProcAddr`.

@@ -2,8 +2,8 @@
 // Recorder (recorder.h) execute, geometry that moves or deforms (HostGeometry) and queries that shaders write
 // (HostQueries).
 //
-// All buffers belong to the HostDevice's VkDevice and queue family, have the usage VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-// and remain the host's.
+// All buffers belong to the HostDevice's VkDevice and queue family, have the usage kHostBufferUsage, and remain the
+// host's.
 #pragma once
 
 #include <optional>
@@ -12,6 +12,8 @@
 #include "radar/device.h"
 
 namespace radar {
+
+inline constexpr VkBufferUsageFlags kHostBufferUsage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
 /// Vertex positions in a buffer.
 struct HostPositions {
@@ -61,9 +63,9 @@ struct TransformLayout {
 inline constexpr TransformLayout kRowMajor{16, 4};     ///< VkTransformMatrixKHR, or a 4x4 matrix by rows
 inline constexpr TransformLayout kColumnMajor{4, 16};  ///< a 4x4 matrix by columns, such as GLSL's mat4
 
-/// New transforms of objects, one each, in this order. Coordinates are at most 2^80; the device fits the tree over
-/// objects to them. An object with Scene::setBounds stays within those: its mesh's box, in float arithmetic, exceeds
-/// them by at most a millionth of their largest coordinate.
+/// New transforms of objects, one each: of those listed, in this order, or of `count` objects from `firstObject` on.
+/// Coordinates are at most 2^80; the device fits the tree over objects to them. An object with Scene::setBounds stays
+/// within those: its mesh's box, in float arithmetic, exceeds them by at most a millionth of their largest coordinate.
 ///
 /// A shader that adds an answer to a place rounds the sum, so that the object may touch what it was free of. The sum is
 /// exact if both are multiples of one power of two, of which it is at most 2^24 times.
@@ -72,6 +74,8 @@ struct MovedObjects {
   VkDeviceSize first = 0;    ///< offset of the first transform, bytes
   VkDeviceSize stride = 48;  ///< distance between transforms, bytes; at least a transform's extent
   std::span<const ObjectId> objects{};
+  ObjectId firstObject = 0;
+  uint32_t count = 0;  ///< 0 with a list
   TransformLayout layout = kRowMajor;
 };
 

@@ -67,11 +67,21 @@ struct AnswerCounts {
   uint32_t flagged(uint32_t flag) const { return byFlag[static_cast<size_t>(std::countr_zero(flag))]; }
 };
 
+/// Stages, and how they access memory.
+struct Access {
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+};
+
 /// Records batches of mode contact. Make one per frame in flight, while loading: each has its own lists. The first one
 /// of a Device creates the pipelines, which belong to the Device. Keep the Recorder and the Device until the recorded
 /// commands have executed: destructors do not wait.
 class RADAR_API Recorder {
  public:
+  /// How recorded commands read the buffers of HostGeometry and HostQueries, and write results().
+  static constexpr Access kReads{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
+  static constexpr Access kWrites{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
+
   /// With a copy of the scene of its own. `device` and `scene` outlive it. Throws, naming the member, if the device's
   /// buffers cannot hold `capacity`; and with reasons if the device answers known queries wrongly.
   Recorder(const Device& device, const Scene& scene, const Capacity& capacity = {});
@@ -87,11 +97,10 @@ class RADAR_API Recorder {
   /// finite or too large for floats, every answer becomes Status::invalid with Flag::bounds.
   ///
   /// - Before: the previous recording of this object has executed and been waited for. Writes to the buffers of
-  ///   `geometry` are visible to VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them
-  ///   wait for that stage. Without `geometry` nothing needs to be made visible.
+  ///   `geometry` are visible to kReads; the next writes to them wait for its stage. Without `geometry` nothing needs
+  ///   to be made visible.
   /// - Afterwards: submit the commands once or never; if never, call reset() before the next record(), which else
-  ///   throws. Readers of results() wait for VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-  ///   VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT.
+  ///   throws. Readers of results() wait for kWrites.
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
@@ -105,8 +114,7 @@ class RADAR_API Recorder {
   /// HostQueries::count, become Status::invalid with Flag::query, as do queries that break the contract of HostQuery.
   /// Matrices of nothing but subnormal floats are out of range, too.
   ///
-  /// - Before: writes to the buffers of `queries` are visible to VK_PIPELINE_STAGE_2_COPY_BIT,
-  ///   VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them wait for that stage.
+  /// - Before: writes to the buffers of `queries` are visible to kReads; the next writes to them wait for its stage.
   /// - Allocates device memory also if the queries' span has grown. The first such recording of a Device, be it of no
   ///   query, creates a pipeline.
   ///

@@ -8,6 +8,8 @@
 //
 // In a shader without doubles, define RADAR_NO_DOUBLES first: doubles are then given as their bits, for radarFloat().
 // RADAR_RESULT_BITS does the same to preserve NaN, which a device may lose in double operations.
+//
+// Who moves by all of radarFree() may touch: stop short, by more than the rounding of the place that results.
 #ifndef RADAR_RESULT_GLSL
 #define RADAR_RESULT_GLSL
 
@@ -51,6 +53,17 @@ float radarFloat(uvec2 bits) {
   if (exponent > 1150u) return uintBitsToFloat(sign | 0x7f7fffffu);
   if (exponent < 897u) return uintBitsToFloat(sign);
   return uintBitsToFloat(sign | (exponent - 896u) << 23 | significand);
+}
+#if !defined(RADAR_NO_DOUBLES) && !defined(RADAR_RESULT_BITS)
+float radarFloat(double value) {
+  return radarFloat(unpackDouble2x32(value));
+}
+#endif
+
+// How far the sensor may move of the distance `asked`, which is not above the query's, before it can touch anything: also
+// where the device could not decide where exactly that is. 0 if there is no answer.
+float radarFree(RadarResult result, float asked) {
+  return result.status == RADAR_STATUS_invalid ? 0.0 : min(radarFloat(result.lo), asked);
 }
 
 #endif

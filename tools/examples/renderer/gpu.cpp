@@ -53,7 +53,7 @@ Gpu::Gpu(std::span<const char* const> extensions) {
   VkPhysicalDeviceVulkan13Features own{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                        .synchronization2 = VK_TRUE,
                                        .dynamicRendering = VK_TRUE};
-  radar::Requirements needed = radar::requirements(radar::Mode::contact, doubles_);
+  radar::Requirements needed = radar::requirements(handles());
   const float priority = 1;
   const VkDeviceQueueCreateInfo queueInfo{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                           .queueFamilyIndex = family,

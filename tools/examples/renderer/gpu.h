@@ -46,8 +46,8 @@ class Gpu {
 
   VkInstance instance;
   VkPhysicalDevice physical;
-  VkDevice device;
-  VkQueue queue;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
   uint32_t family;
   std::string name;
   double nanosecondsPerTick;

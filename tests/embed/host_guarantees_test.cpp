@@ -6,22 +6,13 @@
 #include <vulkan/vulkan.h>
 
 #include "embed/checks.h"
+#include "embed/host_barrier.h"
 #include "embed/host_world.h"
 #include "embed/quiet_frames.h"
 #include "gpu/kernel.h"
 #include "spirv/skin_comp.h"
 #include "support/bindings.h"
 #include "support/small_scenes.h"
-
-struct Moving {
-  radar::MeshId body;
-  VkBuffer skinned, transforms;
-  radar::ObjectId firstCrate;
-};
-void addMoving(radar::Scene& scene, const radar::Device& device, const radar::HostMesh& restPose, radar::MeshId crate,
-               Moving& moving);
-void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
-                  const Moving& moving);
 
 namespace {
 
@@ -234,14 +225,8 @@ TEST_CASE("a host that writes geometry in the same command buffer without the do
     const gpu::Commands commands = submission.begin();
     vkCmdUpdateBuffer(commands, buffer.get(), 0, sizeof(vertices), vertices);
     vkCmdUpdateBuffer(commands, buffer.get(), sizeof(vertices), sizeof(transform), transform);
-    const VkMemoryBarrier2 writtenToCopy{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                         .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                         .dstStageMask = Recorder::kReads.stages,
-                                         .dstAccessMask = Recorder::kReads.access};
-    const VkDependencyInfo info{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &writtenToCopy};
-    if (withBarrier) commands->CmdPipelineBarrier2(commands, &info);
+    const Access updates{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+    if (withBarrier) test::barrier(commands, updates, Recorder::kReads);
     recorder.record(commands, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
     submission.submitAndWait();
     CHECK(recorder.read().results[0].t == Approx(8));
@@ -272,8 +257,11 @@ struct SkinningFrames {
     for (uint32_t i = 0; i < 3; ++i) bindings.setBuffer(i, all[i]->get());
 
     const MeshId crate = test::addMesh(scene, test::triangle());
-    moving = {.body = kNone, .skinned = skinned.get(), .transforms = transforms.get(), .firstCrate = kNone};
-    addMoving(scene, engine, {.positions = {.buffer = atRest.get(), .stride = 32}, .vertexCount = 3}, crate, moving);
+    const HostMesh restPose{.positions = {.buffer = atRest.get(), .stride = 32}, .vertexCount = 3};
+    body = {radar::addMesh(scene, engine, restPose), {.buffer = skinned.get(), .stride = 32}};
+    scene.addObject({.mesh = body.mesh});
+    crates = {.transforms = transforms.get(), .firstObject = scene.objectLimit(), .count = 20};
+    for (int i = 0; i < 20; ++i) scene.addObject({.mesh = crate});
     for (const double x : {0, 10}) {
       queries.push_back({.mesh = crate, .worldFromMesh = at(x, 0, -3), .direction = {0, 0, 1}, .distance = 20});
     }
@@ -286,7 +274,8 @@ struct SkinningFrames {
     commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, skin.get());
     commands->CmdPushConstants(commands, bindings.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(lift), &lift);
     commands->CmdDispatch(commands, 5, 1, 1);
-    recordMoving(commands, *recorder, queries, moving);
+    test::barrier(commands, Recorder::kWrites, Recorder::kReads);
+    recorder->record(commands, queries, {.meshes = {&body, 1}, .objects = {&crates, 1}});
     submission.submitAndWait();
     for (const Result& result : recorder->read().results) CHECK(result.t == 3 + double{lift});
   }
@@ -296,7 +285,8 @@ struct SkinningFrames {
   gpu::Pipeline skin;
   gpu::Submission submission;
   Scene scene;
-  Moving moving;
+  DeformedMesh body;
+  MovedObjects crates;
   std::vector<Query> queries;
   std::optional<Recorder> recorder;
 };

@@ -2,16 +2,11 @@
 #include <numeric>
 
 #include "embed/checks.h"
+#include "embed/host_barrier.h"
 #include "embed/quiet_frames.h"
 #include "embed/renderer.h"
 #include "embed/written_queries.h"
 #include "spirv/write_queries_comp.h"
-
-// In record_written.cpp.
-struct Asked {
-  VkBuffer queries, number;
-};
-void recordAsked(VkCommandBuffer commands, radar::Recorder& recorder, const Asked& asked);
 
 namespace {
 
@@ -55,11 +50,8 @@ class Asker {
     commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
     commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
     commands->CmdDispatch(commands, 4, 1, 1);
-    if (withBarrier) {
-      recordAsked(commands, recorder, {queries_.get(), number_.get()});
-    } else {
-      recorder.record(commands, HostQueries{.buffer = queries_.get(), .count = 256, .countBuffer = number_.get()});
-    }
+    if (withBarrier) test::barrier(commands, Recorder::kWrites, Recorder::kReads);
+    recorder.record(commands, HostQueries{.buffer = queries_.get(), .count = 256, .countBuffer = number_.get()});
     submission_.submitAndWait();
     return recorder.read().results;
   }

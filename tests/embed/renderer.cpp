@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "embed/host_barrier.h"
 #include "spirv/read_results_comp.h"
 #include "spirv/read_results_comp_RADAR_NO_DOUBLES.h"
 #include "support/catch.h"
 #include "workloads/shapes.h"
-
-void recordQueries(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries);
 
 namespace radar::test {
 
@@ -26,11 +25,8 @@ Renderer::Renderer(const Device& device)
 
 void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool withBarrier) {
   const gpu::Commands commands = submission_.begin();
-  if (withBarrier) {
-    recordQueries(commands, recorder, queries);
-  } else {
-    recorder.record(commands, queries);
-  }
+  recorder.record(commands, queries);
+  if (withBarrier) barrier(commands, Recorder::kWrites, kShaderReads);
   bindings_.setBuffer(0, recorder.results());
   const auto count = static_cast<uint32_t>(queries.size());
   commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());

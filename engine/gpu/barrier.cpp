@@ -58,7 +58,7 @@ void uploadToRead(const Commands& commands) {
 }
 
 void transferToComputeReadWrite(const Commands& commands) {
-  // vkCmdFillBuffer is a clear in the specification, a copy in validation layer 1.3.239.
+  // CmdFillBuffer is a clear in the specification, a copy in validation layer 1.3.239.
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kComputeReadWrite);
 }

@@ -2,11 +2,10 @@
 // something may move.
 #pragma once
 
-#include <array>
-#include <optional>
-
 #include "gpu.h"
-#include "radar/recorder.h"
+#include "spirv/ask_comp.h"
+#include "spirv/claim_comp.h"
+#include "spirv/move_comp.h"
 #include "world.h"
 
 namespace example {
@@ -16,60 +15,148 @@ inline constexpr uint32_t kFramesInFlight = 2;
 /// `slot`, in all calls: which of the frames in flight is recorded; its last one has executed and been waited for.
 class Agents {
  public:
-  Agents(const Gpu& gpu, World& world, const radar::OnProgress& onProgress);
+  Agents(const Gpu& gpu, World& world)
+      : gpu_(gpu), world_(world), device_(radar::Device::adopt(gpu.host)), copy_(device_, world.scene) {
+    push.agents = static_cast<uint32_t>(world.agents.size());
+    push.mesh = world.agentMesh;
+    push.radius = world.radius;
+    push.city = world.half;
+    makeBuffers();
+    makeLayout();
+    claim_ = makeCompute(gpu_, *layout_, k_claim_comp);
+    ask_ = makeCompute(gpu_, *layout_, k_ask_comp);
+    move_ = makeCompute(gpu_, *layout_, k_move_comp);
+    for (uint32_t i = 0; i < kFramesInFlight; ++i) slots_.push_back(makeSlot());
+  }
 
-  /// A step is these three, one after another. The agents claim room, and those that may move write their queries.
-  void ask(VkCommandBuffer commands, uint32_t slot);
-  /// The engine answers.
-  void search(VkCommandBuffer commands, uint32_t slot);
-  /// The agents read the answers and move.
-  void move(VkCommandBuffer commands, uint32_t slot);
+  /// One frame: the agents claim room, those that may move ask, the engine answers, and they move.
+  void step(const vk::raii::CommandBuffer& commands, uint32_t slot) {
+    ++push.frame;
+    // What the previous frame has read is written again.
+    barrier(commands, kCompute | kEngineReads | kVertex | kCopy, kCompute | kCopy);
+    commands.fillBuffer(*buffers_[kGridCells].handle, 0, VK_WHOLE_SIZE, 0);
+    barrier(commands, kCopy, kCompute);
+    dispatch(commands, slot, claim_);
+    barrier(commands, kCompute, kCompute);
+    dispatch(commands, slot, ask_);
+    // The engine reads the queries, and where everything is, from the buffers that the shaders have written.
+    barrier(commands, kCompute, kEngineReads);
+    slots_[slot].recorder.record(*commands, queries_, geometry());
+    barrier(commands, kEngineReads | kEngineWrites, kCompute);
+    dispatch(commands, slot, move_);
+    barrier(commands, kCompute, kVertex | kCopy);
+    commands.copyBuffer(*buffers_[kAgents].handle, *slots_[slot].agents.handle,
+                        vk::BufferCopy{.size = buffers_[kAgents].size});
+    barrier(commands, kCopy, kCpu);
+  }
 
-  /// Copies to the CPU what check() needs, which is called when that has executed.
-  void readBack(VkCommandBuffer commands, uint32_t slot);
-  struct Check {
-    uint32_t crossings = 0;
-    uint32_t answered = 0, refused = 0;  ///< queries so far, and those without an answer
-  };
-  /// Counts agents that touch or cross anything. The scene learns where they have gone, which keeps the search fast.
-  Check check(uint32_t slot);
+  /// Once that has executed: counts the queries, and in some frames agents that touch or cross anything. The scene
+  /// learns where they have gone, which keeps the search fast.
+  void check(uint32_t slot, bool crossings) {
+    const radar::AnswerCounts counts = slots_[slot].recorder.answerCounts();
+    for (const uint32_t count : counts.byStatus) report.queries += count;
+    report.unanswered += counts.of(radar::Status::invalid);
+    if (!crossings) return;
+    std::vector<Agent> now(push.agents);
+    std::memcpy(now.data(), slots_[slot].agents.mapped, slots_[slot].agents.size);
+    report.crossings += world_.crossings(now);
+    ++report.checks;
+  }
+  struct {
+    uint32_t queries = 0, unanswered = 0, checks = 0, crossings = 0;
+  } report;
 
-  /// What the engine holds on the device.
-  radar::MemoryUse memoryUse() const { return device_.memoryUse(); }
-  VkPipelineLayout layout() const { return layout_; }
-  void bind(VkCommandBuffer commands, uint32_t slot, VkPipelineBindPoint point, VkPipeline pipeline) const;
+  vk::PipelineLayout layout() const { return *layout_; }
+  void bind(const vk::raii::CommandBuffer& commands, uint32_t slot, vk::PipelineBindPoint point,
+            const vk::raii::Pipeline& pipeline) const {
+    commands.bindPipeline(point, *pipeline);
+    commands.bindDescriptorSets(point, *layout_, 0, *slots_[slot].set, nullptr);
+    commands.pushConstants<Push>(*layout_, kPushStages, 0, push);
+  }
 
   Push push{};  ///< the constants of all shaders
 
  private:
+  using Usage = vk::BufferUsageFlagBits;
+  static constexpr vk::ShaderStageFlags kStages = vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eVertex;
+  static constexpr vk::ShaderStageFlags kPushStages = kStages | vk::ShaderStageFlagBits::eFragment;
+
   struct Slot {
-    std::optional<radar::Recorder> recorder;
-    VkDescriptorSet set;
-    Buffer transforms, skinned, agents, counts;  ///< read back
-    uint32_t step = 0;
+    radar::Recorder recorder;
+    vk::raii::DescriptorSet set;
+    Buffer agents;  ///< read back
   };
 
-  void makeBuffers();
-  void makeLayout();
-  void makeSlot(Slot& slot);
-  radar::HostGeometry geometry() const { return {.meshes = deformed_, .objects = {&places_, 1}}; }
-  void dispatch(VkCommandBuffer commands, uint32_t slot, VkPipeline pipeline, uint32_t invocations) const;
+  void makeBuffers() {
+    const vk::BufferUsageFlags storage = Usage::eStorageBuffer,
+                               read = storage | vk::BufferUsageFlags(radar::kHostBufferUsage);
+    std::vector<vec3> vertices = world_.agent;
+    vertices.insert(vertices.end(), world_.building.begin(), world_.building.end());
+    buffers_[kVertices] = makeFilled(gpu_, vertices, storage);
+    buffers_[kAgents] = makeFilled(gpu_, world_.agents, storage | Usage::eTransferSrc);
+    buffers_[kTransforms] = makeFilled(gpu_, world_.transforms, read);
+    buffers_[kGridCells] = makeFilled(gpu_, std::vector<uint32_t>(1 + kBuckets), read);
+    buffers_[kClaims] = makeBuffer(gpu_, push.agents * sizeof(Claim), storage, Where::device);
+    buffers_[kQueries] = makeBuffer(gpu_, push.agents * sizeof(radar::HostQuery), read, Where::device);
+    places_ = {.transforms = *buffers_[kTransforms].handle, .count = push.agents};
+    queries_ = {
+        .buffer = *buffers_[kQueries].handle, .count = push.agents, .countBuffer = *buffers_[kGridCells].handle};
+  }
+
+  void makeLayout() {
+    std::array<vk::DescriptorSetLayoutBinding, kBindings> bindings;
+    for (uint32_t i = 0; i < kBindings; ++i) bindings[i] = {i, vk::DescriptorType::eStorageBuffer, 1, kStages, nullptr};
+    setLayout_ = gpu_.device.createDescriptorSetLayout({.bindingCount = kBindings, .pBindings = bindings.data()});
+    const vk::PushConstantRange range{kPushStages, 0, sizeof(Push)};
+    layout_ = gpu_.device.createPipelineLayout(
+        {.setLayoutCount = 1, .pSetLayouts = &*setLayout_, .pushConstantRangeCount = 1, .pPushConstantRanges = &range});
+    const vk::DescriptorPoolSize size{vk::DescriptorType::eStorageBuffer, kBindings * kFramesInFlight};
+    sets_ = gpu_.device.createDescriptorPool({.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                              .maxSets = kFramesInFlight,
+                                              .poolSizeCount = 1,
+                                              .pPoolSizes = &size});
+  }
+
+  Slot makeSlot() {
+    radar::Recorder recorder(copy_, {.queries = push.agents});
+    recorder.prepare(queries_, geometry());
+    vk::raii::DescriptorSet set = std::move(gpu_.device.allocateDescriptorSets(
+        {.descriptorPool = *sets_, .descriptorSetCount = 1, .pSetLayouts = &*setLayout_})[0]);
+    for (uint32_t i = 0; i < kBindings; ++i) {
+      // Each recorder has a buffer of answers of its own.
+      const vk::Buffer buffer = i == kResults ? vk::Buffer(recorder.results()) : *buffers_[i].handle;
+      const vk::DescriptorBufferInfo info{buffer, 0, VK_WHOLE_SIZE};
+      gpu_.device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet = *set,
+                                                              .dstBinding = i,
+                                                              .descriptorCount = 1,
+                                                              .descriptorType = vk::DescriptorType::eStorageBuffer,
+                                                              .pBufferInfo = &info},
+                                       nullptr);
+    }
+    return {std::move(recorder), std::move(set),
+            makeBuffer(gpu_, buffers_[kAgents].size, Usage::eTransferDst, Where::host)};
+  }
+
+  void dispatch(const vk::raii::CommandBuffer& commands, uint32_t slot, const vk::raii::Pipeline& pipeline) const {
+    bind(commands, slot, vk::PipelineBindPoint::eCompute, pipeline);
+    commands.dispatch((push.agents + 63) / 64, 1, 1);
+  }
+
+  radar::HostGeometry geometry() const { return {.objects = {&places_, 1}}; }
 
   const Gpu& gpu_;
   World& world_;
-  Lifetime lifetime_;
   radar::Device device_;
   radar::SceneCopy copy_;
   std::array<Buffer, kBindings> buffers_;
-  VkDescriptorSetLayout setLayout_;
-  VkPipelineLayout layout_;
-  VkPipeline skin_, claim_, ask_, move_;
-  std::array<Slot, kFramesInFlight> slots_;
-  // What the device writes, and the engine reads: where all agents are, two meshes of each walker, and the queries.
-  std::vector<radar::ObjectId> moved_;
+  vk::raii::DescriptorSetLayout setLayout_ = nullptr;
+  vk::raii::DescriptorPool sets_ = nullptr;
+  vk::raii::PipelineLayout layout_ = nullptr;
+  vk::raii::Pipeline claim_ = nullptr, ask_ = nullptr, move_ = nullptr;
+  // What the device writes, and the engine reads: where all agents are, and the queries.
   radar::MovedObjects places_;
-  std::vector<radar::DeformedMesh> deformed_;
   radar::HostQueries queries_;
+  std::vector<Slot> slots_;
 };
 
 }  // namespace example

@@ -16,13 +16,14 @@ layout(push_constant, scalar) uniform Constants { Push push; };
 
 bool mayMove(uint id, Claim claim) {
   const ivec3 cell = ivec3(floor(claim.centre / kCell));
+  const uint priority = hash(id, push.frame);
   for (int i = 0; i < 27; ++i) {
-    uint other = heads[bucketOf(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1)];
-    while (other != RADAR_NO_EXCLUSION) {
-      const Claim theirs = claims[other];
-      const bool before = theirs.priority < claim.priority || (theirs.priority == claim.priority && other < id);
+    Claim theirs;
+    for (uint next = heads[bucketOf(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1)]; next != 0; next = theirs.link) {
+      theirs = claims[next - 1];
+      const uint other = hash(next - 1, push.frame);
+      const bool before = other < priority || (other == priority && next - 1 < id);
       if (before && distance(theirs.centre, claim.centre) < theirs.radius + claim.radius) return false;
-      other = theirs.link;
     }
   }
   return true;
@@ -30,20 +31,15 @@ bool mayMove(uint id, Claim claim) {
 
 void main() {
   const uint id = gl_GlobalInvocationID.x;
-  if (id >= push.agents) return;
-  const Claim claim = claims[id];
-  if (!mayMove(id, claim)) return;
-  const Agent agent = agents[id];
-  const float angle = 6.2831853 / kTurn * float(claim.heading);
-  const vec2 ahead = round(vec2(cos(angle), sin(angle)) * kGrid) / kGrid;
+  if (id >= push.agents || !mayMove(id, claims[id])) return;
+  const vec3 place = agents[id].place;
   RadarQuery query;
-  query.worldFromMesh = vec4[3](vec4(ahead.x, -ahead.y, 0.0, agent.place.x), vec4(ahead.y, ahead.x, 0.0, agent.place.y),
-                                vec4(0.0, 0.0, 1.0, agent.place.z));
-  query.direction = claim.stride;
+  for (uint row = 0; row < 3; ++row) query.worldFromMesh[row] = vec4(mat3(1.0)[row], place[row]);
+  query.direction = claims[id].stride;
   query.distance = kReach;
-  query.mesh = claim.keeps == 1 ? agent.body : agent.sensor;
+  query.mesh = push.mesh;
   query.mask = ~0u;
-  query.exclude = id;  // objects 0, 1, 2, ... are the agents
+  query.exclude = id;
   query.flags = 0;
   queries[atomicAdd(asked, 1)] = query;
 }

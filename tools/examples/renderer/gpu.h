@@ -2,115 +2,222 @@
 // made.
 #pragma once
 
-#include <functional>
+#include <cstring>
 #include <span>
-#include <string>
 #include <vector>
 
-#include <vulkan/vulkan.h>
+#define VULKAN_HPP_NO_CONSTRUCTORS
+#include <vulkan/vulkan_raii.hpp>
 
-#include "radar/device.h"
+#include "radar/recorder.h"
 
 namespace example {
 
-/// Throws radar::Error, naming the call, unless it succeeded.
-void require(VkResult result, const char* call);
+inline constexpr vk::Format kColour = vk::Format::eR8G8B8A8Unorm, kDepth = vk::Format::eD32Sfloat;
+inline constexpr vk::SampleCountFlagBits kSamples = vk::SampleCountFlagBits::e4;
 
-/// Destroys what it was told to, last first.
-class Lifetime {
- public:
-  Lifetime() = default;
-  Lifetime(const Lifetime&) = delete;
-  Lifetime& operator=(const Lifetime&) = delete;
-  ~Lifetime() { end(); }
-  void add(std::function<void()> end) { ends_.push_back(std::move(end)); }
-  template <typename Handle>
-  void add(VkDevice device, Handle handle, void(VKAPI_PTR* destroy)(VkDevice, Handle, const VkAllocationCallbacks*)) {
-    add([=] { destroy(device, handle, nullptr); });
-  }
-  void end() {
-    for (; !ends_.empty(); ends_.pop_back()) ends_.back()();
-  }
-
- private:
-  std::vector<std::function<void()>> ends_;
-};
-
-class Gpu {
- public:
+struct Gpu {
   /// `extensions`: of the instance, as the window system needs them; none: no window.
-  explicit Gpu(std::span<const char* const> extensions);
-  /// What the engine adopts.
-  radar::HostDevice handles() const;
-  uint32_t memoryType(uint32_t allowed, VkMemoryPropertyFlags wanted) const;
+  explicit Gpu(const std::vector<const char*>& extensions) {
+    const vk::ApplicationInfo application{.apiVersion = VK_API_VERSION_1_3};
+    instance = loader.createInstance({.pApplicationInfo = &application,
+                                      .enabledExtensionCount = static_cast<uint32_t>(extensions.size()),
+                                      .ppEnabledExtensionNames = extensions.data()});
+    host = radar::hostOf(*instance);
+    physical = {instance, host.physicalDevice};
+    if (!(physical.getQueueFamilyProperties()[host.queueFamily].queueFlags & vk::QueueFlagBits::eGraphics))
+      throw radar::Error("the device draws no pictures");
 
-  VkInstance instance;
-  VkPhysicalDevice physical;
-  VkDevice device = VK_NULL_HANDLE;
-  VkQueue queue = VK_NULL_HANDLE;
-  uint32_t family;
-  std::string name;
-  double nanosecondsPerTick;
+    // The renderer's own features. The engine's are added to these structs, or put in front of them.
+    vk::PhysicalDeviceVulkan13Features own{.synchronization2 = VK_TRUE, .dynamicRendering = VK_TRUE};
+    radar::Requirements needed = radar::requirements(host);
+    const float priority = 1;
+    const vk::DeviceQueueCreateInfo queueInfo{
+        .queueFamilyIndex = host.queueFamily, .queueCount = 1, .pQueuePriorities = &priority};
+    const char* swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    device = physical.createDevice({.pNext = needed.chain(&own),
+                                    .queueCreateInfoCount = 1,
+                                    .pQueueCreateInfos = &queueInfo,
+                                    .enabledExtensionCount = extensions.empty() ? 0u : 1u,
+                                    .ppEnabledExtensionNames = &swapchain});
+    queue = device.getQueue(host.queueFamily, 0);
+    pool = device.createCommandPool(
+        {.flags = vk::CommandPoolCreateFlagBits::eResetCommandBuffer, .queueFamilyIndex = host.queueFamily});
+    host.device = *device;
+    host.queue = *queue;
+  }
 
- private:
-  void choose();
-
-  Lifetime lifetime_;
-  bool doubles_ = false;
+  vk::raii::Context loader;
+  vk::raii::Instance instance = nullptr;
+  radar::HostDevice host;  ///< what the engine adopts
+  vk::raii::PhysicalDevice physical = nullptr;
+  vk::raii::Device device = nullptr;
+  vk::raii::Queue queue = nullptr;
+  vk::raii::CommandPool pool = nullptr;
 };
+
+inline vk::raii::DeviceMemory allocate(const Gpu& gpu, const vk::MemoryRequirements& needed,
+                                       vk::MemoryPropertyFlags wanted) {
+  const vk::PhysicalDeviceMemoryProperties has = gpu.physical.getMemoryProperties();
+  for (uint32_t i = 0; i < has.memoryTypeCount; ++i) {
+    if ((needed.memoryTypeBits >> i & 1) != 0 && (has.memoryTypes[i].propertyFlags & wanted) == wanted)
+      return gpu.device.allocateMemory({.allocationSize = needed.size, .memoryTypeIndex = i});
+  }
+  throw radar::Error("the device has no memory of the kind needed");
+}
 
 struct Buffer {
-  VkBuffer handle = VK_NULL_HANDLE;
-  VkDeviceSize size = 0;
+  vk::raii::DeviceMemory memory = nullptr;
+  vk::raii::Buffer handle = nullptr;
+  vk::DeviceSize size = 0;
   std::byte* mapped = nullptr;  ///< null on the device
 };
 enum class Where { device, host };
-Buffer makeBuffer(const Gpu& gpu, Lifetime& lifetime, VkDeviceSize size, VkBufferUsageFlags usage, Where where);
-/// A command buffer that may be recorded again and again.
-VkCommandBuffer makeCommands(const Gpu& gpu, Lifetime& lifetime);
-/// A buffer on the device with these bytes; waits.
-Buffer makeFilled(const Gpu& gpu, Lifetime& lifetime, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
+
+inline Buffer makeBuffer(const Gpu& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, Where where) {
+  Buffer buffer;
+  buffer.size = size;
+  buffer.handle = gpu.device.createBuffer({.size = size, .usage = usage});
+  const bool onHost = where == Where::host;
+  const auto visible = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
+  buffer.memory = allocate(gpu, buffer.handle.getMemoryRequirements(), onHost ? visible : vk::MemoryPropertyFlags());
+  buffer.handle.bindMemory(*buffer.memory, 0);
+  if (onHost) buffer.mapped = static_cast<std::byte*>(buffer.memory.mapMemory(0, VK_WHOLE_SIZE));
+  return buffer;
+}
+
+inline vk::raii::CommandBuffer makeCommands(const Gpu& gpu) {
+  return std::move(gpu.device.allocateCommandBuffers({.commandPool = *gpu.pool, .commandBufferCount = 1})[0]);
+}
+
+/// A buffer on the device with these values; waits.
+template <typename T>
+Buffer makeFilled(const Gpu& gpu, const std::vector<T>& values, vk::BufferUsageFlags usage) {
+  const size_t bytes = sizeof(T) * values.size();
+  Buffer buffer = makeBuffer(gpu, bytes, usage | vk::BufferUsageFlagBits::eTransferDst, Where::device);
+  const Buffer staging = makeBuffer(gpu, bytes, vk::BufferUsageFlagBits::eTransferSrc, Where::host);
+  std::memcpy(staging.mapped, values.data(), bytes);
+  const vk::raii::CommandBuffer commands = makeCommands(gpu);
+  commands.begin({});
+  commands.copyBuffer(*staging.handle, *buffer.handle, vk::BufferCopy{.size = bytes});
+  commands.end();
+  gpu.queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &*commands});
+  gpu.queue.waitIdle();
+  return buffer;
+}
 
 struct Image {
-  VkImage handle = VK_NULL_HANDLE;
-  VkImageView view = VK_NULL_HANDLE;
+  vk::raii::DeviceMemory memory = nullptr;
+  vk::raii::Image handle = nullptr;
+  vk::raii::ImageView view = nullptr;
 };
-Image makeImage(const Gpu& gpu, Lifetime& lifetime, VkExtent2D size, VkFormat format, VkSampleCountFlagBits samples,
-                VkImageUsageFlags usage);
 
-inline constexpr VkFormat kColour = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFLOAT;
-inline constexpr VkSampleCountFlagBits kSamples = VK_SAMPLE_COUNT_4_BIT;
+inline Image makeImage(const Gpu& gpu, vk::Extent2D size, vk::Format format, vk::SampleCountFlagBits samples,
+                       vk::ImageUsageFlags usage) {
+  Image image;
+  image.handle = gpu.device.createImage({.imageType = vk::ImageType::e2D,
+                                         .format = format,
+                                         .extent = {size.width, size.height, 1},
+                                         .mipLevels = 1,
+                                         .arrayLayers = 1,
+                                         .samples = samples,
+                                         .usage = usage});
+  image.memory = allocate(gpu, image.handle.getMemoryRequirements(), {});
+  image.handle.bindMemory(*image.memory, 0);
+  const auto aspect = format == kDepth ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
+  image.view = gpu.device.createImageView({.image = *image.handle,
+                                           .viewType = vk::ImageViewType::e2D,
+                                           .format = format,
+                                           .subresourceRange = {aspect, 0, 1, 0, 1}});
+  return image;
+}
 
 using Code = std::span<const uint32_t>;
-VkPipeline makeCompute(const Gpu& gpu, Lifetime& lifetime, VkPipelineLayout layout, Code code);
-VkPipeline makeGraphics(const Gpu& gpu, Lifetime& lifetime, VkPipelineLayout layout, Code vertex, Code fragment,
-                        VkPrimitiveTopology topology);
 
-/// A stage, and how it accesses memory.
-struct Access {
-  VkPipelineStageFlags2 stage;
-  VkAccessFlags2 access;
-};
-inline constexpr Access kFilled{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
-inline constexpr Access kComputed{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
+inline vk::raii::ShaderModule makeModule(const Gpu& gpu, Code code) {
+  return gpu.device.createShaderModule({.codeSize = code.size_bytes(), .pCode = code.data()});
+}
+
+inline vk::raii::Pipeline makeCompute(const Gpu& gpu, vk::PipelineLayout layout, Code code) {
+  const vk::raii::ShaderModule module = makeModule(gpu, code);
+  const vk::PipelineShaderStageCreateInfo stage{
+      .stage = vk::ShaderStageFlagBits::eCompute, .module = *module, .pName = "main"};
+  return gpu.device.createComputePipeline(nullptr, {.stage = stage, .layout = layout});
+}
+
+inline vk::raii::Pipeline makeGraphics(const Gpu& gpu, vk::PipelineLayout layout, Code vertex, Code fragment) {
+  const vk::raii::ShaderModule modules[] = {makeModule(gpu, vertex), makeModule(gpu, fragment)};
+  const vk::PipelineShaderStageCreateInfo stages[] = {
+      {.stage = vk::ShaderStageFlagBits::eVertex, .module = *modules[0], .pName = "main"},
+      {.stage = vk::ShaderStageFlagBits::eFragment, .module = *modules[1], .pName = "main"}};
+  const vk::PipelineVertexInputStateCreateInfo fetched;
+  const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
+  const vk::PipelineViewportStateCreateInfo viewport{.viewportCount = 1, .scissorCount = 1};
+  const vk::PipelineRasterizationStateCreateInfo raster{.lineWidth = 1};
+  const vk::PipelineMultisampleStateCreateInfo samples{.rasterizationSamples = kSamples};
+  const vk::PipelineDepthStencilStateCreateInfo depth{
+      .depthTestEnable = VK_TRUE, .depthWriteEnable = VK_TRUE, .depthCompareOp = vk::CompareOp::eLess};
+  const vk::PipelineColorBlendAttachmentState opaque{.colorWriteMask = vk::ColorComponentFlags(0xf)};
+  const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = 1, .pAttachments = &opaque};
+  const vk::DynamicState states[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = 2, .pDynamicStates = states};
+  const vk::PipelineRenderingCreateInfo rendering{
+      .colorAttachmentCount = 1, .pColorAttachmentFormats = &kColour, .depthAttachmentFormat = kDepth};
+  return gpu.device.createGraphicsPipeline(nullptr, {.pNext = &rendering,
+                                                     .stageCount = 2,
+                                                     .pStages = stages,
+                                                     .pVertexInputState = &fetched,
+                                                     .pInputAssemblyState = &assembly,
+                                                     .pViewportState = &viewport,
+                                                     .pRasterizationState = &raster,
+                                                     .pMultisampleState = &samples,
+                                                     .pDepthStencilState = &depth,
+                                                     .pColorBlendState = &blend,
+                                                     .pDynamicState = &dynamic,
+                                                     .layout = layout});
+}
+
+// Who accesses memory, and how.
+using Access = radar::Access;
+inline constexpr Access kEngineReads = radar::Recorder::kReads, kEngineWrites = radar::Recorder::kWrites;
 inline constexpr Access kCompute{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
-inline constexpr Access kCopyRead{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
-inline constexpr Access kCopied{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
-inline constexpr Access kBlitRead{VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
-inline constexpr Access kBlitted{VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
-inline constexpr Access kVertexRead{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
-inline constexpr Access kHostRead{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
+inline constexpr Access kCopy{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                              VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+inline constexpr Access kVertex{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
+inline constexpr Access kCpu{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
 inline constexpr Access kColourDrawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
 inline constexpr Access kDepthDrawn{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+constexpr Access operator|(Access a, Access b) {
+  return {a.stages | b.stages, a.access | b.access};
+}
 
-/// All that was recorded before and accesses memory as `first` happens before what accesses it as `then`.
-void barrier(VkCommandBuffer commands, Access first, Access then);
-/// The same for an image, which gets another layout.
-void barrier(VkCommandBuffer commands, VkImage image, Access first, VkImageLayout from, Access then, VkImageLayout to,
-             VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
+/// What was recorded before and accesses memory as `first` happens before what is recorded later and does as `then`.
+inline void barrier(const vk::raii::CommandBuffer& commands, Access first, Access then) {
+  const vk::MemoryBarrier2 memory{.srcStageMask = vk::PipelineStageFlags2(first.stages),
+                                  .srcAccessMask = vk::AccessFlags2(first.access),
+                                  .dstStageMask = vk::PipelineStageFlags2(then.stages),
+                                  .dstAccessMask = vk::AccessFlags2(then.access)};
+  commands.pipelineBarrier2({.memoryBarrierCount = 1, .pMemoryBarriers = &memory});
+}
+
+/// The same for an image, whose layout changes.
+inline void barrier(const vk::raii::CommandBuffer& commands, vk::Image image, Access first, vk::ImageLayout from,
+                    Access then, vk::ImageLayout to, vk::ImageAspectFlags aspect = vk::ImageAspectFlagBits::eColor) {
+  const vk::ImageMemoryBarrier2 memory{.srcStageMask = vk::PipelineStageFlags2(first.stages),
+                                       .srcAccessMask = vk::AccessFlags2(first.access),
+                                       .dstStageMask = vk::PipelineStageFlags2(then.stages),
+                                       .dstAccessMask = vk::AccessFlags2(then.access),
+                                       .oldLayout = from,
+                                       .newLayout = to,
+                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .image = image,
+                                       .subresourceRange = {aspect, 0, 1, 0, 1}};
+  commands.pipelineBarrier2({.imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &memory});
+}
 
 }  // namespace example

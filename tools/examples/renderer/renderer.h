@@ -1,83 +1,129 @@
-// Frames: the agents ask, the engine answers, the agents move, and all is drawn, in one command buffer.
+// Frames: the agents move, and all is drawn, in one command buffer.
 #pragma once
 
-#include <array>
 #include <functional>
-#include <vector>
 
 #include "agents.h"
-#include "gpu.h"
-#include "world.h"
+#include "spirv/mesh_frag.h"
+#include "spirv/mesh_vert.h"
 
 namespace example {
 
-struct Camera {
-  mat4 clipFromWorld;
-  vec3 eye;
-};
-/// Looks from `eye` at `target`.
-Camera lookAt(const vec3& eye, const vec3& target, float aspect);
-
-/// Where a frame goes.
-struct Output {
-  /// Copies or blits the picture, which is in TRANSFER_SRC_OPTIMAL.
-  std::function<void(VkCommandBuffer, VkImage)> record{};
-  std::function<void()> done{};  ///< called when all that has executed
-  bool check = false;            ///< the agents, also if it is not the turn of this frame
-  VkSemaphore acquired = VK_NULL_HANDLE, drawn = VK_NULL_HANDLE;
-};
-
-enum class Lines { none, contacts, normals };
-
-/// What the device has measured and the CPU has checked.
-struct Report {
-  static constexpr const char* kStages[] = {"write queries", "search", "read and move", "draw", "copy out"};
-  std::array<std::vector<double>, 5> milliseconds;  ///< one number a frame and stage
-  std::vector<double> whole;                        ///< of a frame's commands
-  uint32_t checks = 0, crossings = 0;
-  uint32_t answered = 0, refused = 0;  ///< queries, and those without an answer
-};
+/// Copies or blits a frame's picture, which is in TRANSFER_SRC_OPTIMAL.
+using Output = std::function<void(const vk::raii::CommandBuffer&, vk::Image)>;
 
 class Renderer {
  public:
-  /// Draws a frame that nobody sees, too.
-  Renderer(const Gpu& gpu, World& world, VkExtent2D size, const radar::OnProgress& onProgress);
-  ~Renderer();
-  /// Waits until the device is done, and makes the images anew.
-  void resize(VkExtent2D size);
-  /// Records and submits a frame, in which agents move if `moves`.
-  void frame(const Camera& camera, bool moves, Lines lines, const Output& output);
-  /// Waits for all frames; their reports are then complete.
-  void finish();
-  VkExtent2D size() const { return size_; }
-  const Report& report() const { return report_; }
-  radar::MemoryUse engineMemory() const { return agents_.memoryUse(); }
-  uint32_t frames() const { return frames_; }
+  Renderer(const Gpu& gpu, World& world, vk::Extent2D size)
+      : gpu_(gpu), world_(world), agents_(gpu, world), size_(size) {
+    using Usage = vk::ImageUsageFlagBits;
+    samples_ = makeImage(gpu, size, kColour, kSamples, Usage::eColorAttachment);
+    depth_ = makeImage(gpu, size, kDepth, kSamples, Usage::eDepthStencilAttachment);
+    picture_ =
+        makeImage(gpu, size, kColour, vk::SampleCountFlagBits::e1, Usage::eColorAttachment | Usage::eTransferSrc);
+    mesh_ = makeGraphics(gpu, agents_.layout(), k_mesh_vert, k_mesh_frag);
+    for (Slot& slot : slots_)
+      slot = {makeCommands(gpu), gpu.device.createFence({.flags = vk::FenceCreateFlagBits::eSignaled})};
+  }
+  ~Renderer() { gpu_.device.waitIdle(); }
+
+  /// Records and submits a frame, which is drawn if it has an output; that waits for `acquired` and signals `drawn`, if
+  /// they are given. The CPU checks the agents of each fiftieth.
+  void frame(const Output& output, vk::Semaphore acquired = {}, vk::Semaphore drawn = {}) {
+    const uint32_t index = frames_++ % kFramesInFlight;
+    finish(index);
+    Slot& slot = slots_[index];
+    slot.number = frames_;
+    gpu_.device.resetFences(*slot.done);
+    slot.commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    agents_.step(slot.commands, index);
+    if (output) {
+      draw(slot.commands, index);
+      output(slot.commands, *picture_.handle);
+    }
+    slot.commands.end();
+    const vk::PipelineStageFlags blit = vk::PipelineStageFlagBits::eTransfer;
+    const uint32_t shown = acquired ? 1 : 0;
+    gpu_.queue.submit(vk::SubmitInfo{.waitSemaphoreCount = shown,
+                                     .pWaitSemaphores = &acquired,
+                                     .pWaitDstStageMask = &blit,
+                                     .commandBufferCount = 1,
+                                     .pCommandBuffers = &*slot.commands,
+                                     .signalSemaphoreCount = shown,
+                                     .pSignalSemaphores = &drawn},
+                      *slot.done);
+  }
+
+  /// Waits for all frames, and says what they have shown.
+  void finish() {
+    for (uint32_t i = 0; i < kFramesInFlight; ++i) finish((frames_ + i) % kFramesInFlight);
+    std::printf("queries: %u, without an answer: %u\nchecks by the CPU: %u, crossings: %u\n", agents_.report.queries,
+                agents_.report.unanswered, agents_.report.checks, agents_.report.crossings);
+  }
 
  private:
   struct Slot {
-    VkCommandBuffer commands;
-    VkFence fence;
-    VkQueryPool times;
-    bool pending = false, moved = false, checked = false;
-    std::function<void()> done;
+    vk::raii::CommandBuffer commands = nullptr;
+    vk::raii::Fence done = nullptr;
+    uint32_t number = 0;  ///< of the frame, from 1; 0: none
   };
 
-  void makeSlot(Slot& slot);
-  void draw(VkCommandBuffer commands, uint32_t slot, Lines lines);
-  void wait(uint32_t index);
+  void finish(uint32_t index) {
+    if (gpu_.device.waitForFences(*slots_[index].done, VK_TRUE, UINT64_MAX) != vk::Result::eSuccess)
+      throw radar::Error("vkWaitForFences failed");
+    const uint32_t number = std::exchange(slots_[index].number, 0);
+    if (number != 0) agents_.check(index, number % 50 == 0);
+  }
+
+  void draw(const vk::raii::CommandBuffer& commands, uint32_t slot) {
+    using Layout = vk::ImageLayout;
+    const float around = 0.6f + 0.002f * static_cast<float>(frames_), away = std::min(1.1f * world_.half, 60.0f);
+    agents_.push.eye = {0.88f * away * std::cos(around), 0.88f * away * std::sin(around), 5 + 0.48f * away};
+    agents_.push.aspect = static_cast<float>(size_.width) / static_cast<float>(size_.height);
+    barrier(commands, *samples_.handle, kColourDrawn, Layout::eUndefined, kColourDrawn,
+            Layout::eColorAttachmentOptimal);
+    barrier(commands, *depth_.handle, kDepthDrawn, Layout::eUndefined, kDepthDrawn,
+            Layout::eDepthStencilAttachmentOptimal, vk::ImageAspectFlagBits::eDepth);
+    barrier(commands, *picture_.handle, kCopy, Layout::eUndefined, kColourDrawn, Layout::eColorAttachmentOptimal);
+    const vk::RenderingAttachmentInfo colour{
+        .imageView = *samples_.view,
+        .imageLayout = Layout::eColorAttachmentOptimal,
+        .resolveMode = vk::ResolveModeFlagBits::eAverage,
+        .resolveImageView = *picture_.view,
+        .resolveImageLayout = Layout::eColorAttachmentOptimal,
+        .loadOp = vk::AttachmentLoadOp::eClear,
+        .clearValue = {.color = {.float32 = std::array{0.731f, 0.81f, 0.868f, 1.0f}}}};
+    const vk::RenderingAttachmentInfo depth{.imageView = *depth_.view,
+                                            .imageLayout = Layout::eDepthStencilAttachmentOptimal,
+                                            .loadOp = vk::AttachmentLoadOp::eClear,
+                                            .clearValue = {.depthStencil = {1, 0}}};
+    const vk::Rect2D area{{}, size_};
+    commands.beginRendering({.renderArea = area,
+                             .layerCount = 1,
+                             .colorAttachmentCount = 1,
+                             .pColorAttachments = &colour,
+                             .pDepthAttachment = &depth});
+    commands.setViewport(0,
+                         vk::Viewport{0, 0, static_cast<float>(size_.width), static_cast<float>(size_.height), 0, 1});
+    commands.setScissor(0, area);
+    agents_.bind(commands, slot, vk::PipelineBindPoint::eGraphics, mesh_);
+    const auto ofAgent = static_cast<uint32_t>(world_.agent.size());
+    const uint32_t agents = agents_.push.agents, objects = static_cast<uint32_t>(world_.transforms.size());
+    commands.draw(ofAgent, agents, 0, 0);
+    commands.draw(static_cast<uint32_t>(world_.building.size()), objects - agents, ofAgent, agents);
+    commands.endRendering();
+    barrier(commands, *picture_.handle, kColourDrawn, Layout::eColorAttachmentOptimal, kCopy,
+            Layout::eTransferSrcOptimal);
+  }
 
   const Gpu& gpu_;
   const World& world_;
-  Lifetime lifetime_, images_;
   Agents agents_;
-  VkExtent2D size_{};
+  vk::Extent2D size_;
   Image samples_, depth_, picture_;
-  Buffer indices_;
-  VkPipeline mesh_, line_;
+  vk::raii::Pipeline mesh_ = nullptr;
   std::array<Slot, kFramesInFlight> slots_;
   uint32_t frames_ = 0;
-  Report report_;
 };
 
 }  // namespace example

@@ -53,8 +53,8 @@ struct Buffer {
     handle.bindMemory(*memory, 0);
     floats = static_cast<float*>(memory.mapMemory(0, bytes));
   }
-  vk::raii::Buffer handle;
   vk::raii::DeviceMemory memory = nullptr;
+  vk::raii::Buffer handle;
   float* floats;
 };
 

@@ -4,7 +4,6 @@
 
 #include "gpu.h"
 #include "spirv/ask_comp.h"
-#include "spirv/claim_comp.h"
 #include "spirv/move_comp.h"
 #include "world.h"
 
@@ -19,29 +18,25 @@ class Agents {
       : gpu_(gpu), world_(world), device_(radar::Device::adopt(gpu.host)), copy_(device_, world.scene) {
     push.agents = static_cast<uint32_t>(world.agents.size());
     push.mesh = world.agentMesh;
-    push.radius = world.radius;
     push.city = world.half;
     makeBuffers();
     makeLayout();
-    claim_ = makeCompute(gpu_, *layout_, k_claim_comp);
     ask_ = makeCompute(gpu_, *layout_, k_ask_comp);
     move_ = makeCompute(gpu_, *layout_, k_move_comp);
     for (uint32_t i = 0; i < kFramesInFlight; ++i) slots_.push_back(makeSlot());
   }
 
-  /// One frame: the agents claim room, those that may move ask, the engine answers, and they move.
+  /// One frame: agents ask, the engine answers, and they move.
   void step(const vk::raii::CommandBuffer& commands, uint32_t slot) {
     ++push.frame;
     // What the previous frame has read is written again.
     barrier(commands, kCompute | kEngineReads | kVertex | kCopy, kCompute | kCopy);
-    commands.fillBuffer(*buffers_[kGridCells].handle, 0, VK_WHOLE_SIZE, 0);
+    commands.fillBuffer(*buffers_[kAsked].handle, 0, VK_WHOLE_SIZE, 0);
     barrier(commands, kCopy, kCompute);
-    dispatch(commands, slot, claim_);
-    barrier(commands, kCompute, kCompute);
     dispatch(commands, slot, ask_);
     // The engine reads the queries, and where everything is, from the buffers that the shaders have written.
     barrier(commands, kCompute, kEngineReads);
-    slots_[slot].recorder.record(*commands, queries_, geometry());
+    slots_[slot].recorder.record(*commands, queries_, {.objects = {&places_, 1}});
     barrier(commands, kEngineReads | kEngineWrites, kCompute);
     dispatch(commands, slot, move_);
     barrier(commands, kCompute, kVertex | kCopy);
@@ -71,15 +66,15 @@ class Agents {
             const vk::raii::Pipeline& pipeline) const {
     commands.bindPipeline(point, *pipeline);
     commands.bindDescriptorSets(point, *layout_, 0, *slots_[slot].set, nullptr);
-    commands.pushConstants<Push>(*layout_, kPushStages, 0, push);
+    commands.pushConstants<Push>(*layout_, kStages, 0, push);
   }
 
   Push push{};  ///< the constants of all shaders
 
  private:
   using Usage = vk::BufferUsageFlagBits;
-  static constexpr vk::ShaderStageFlags kStages = vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eVertex;
-  static constexpr vk::ShaderStageFlags kPushStages = kStages | vk::ShaderStageFlagBits::eFragment;
+  static constexpr vk::ShaderStageFlags kStages =
+      vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eAllGraphics;
 
   struct Slot {
     radar::Recorder recorder;
@@ -95,19 +90,17 @@ class Agents {
     buffers_[kVertices] = makeFilled(gpu_, vertices, storage);
     buffers_[kAgents] = makeFilled(gpu_, world_.agents, storage | Usage::eTransferSrc);
     buffers_[kTransforms] = makeFilled(gpu_, world_.transforms, read);
-    buffers_[kGridCells] = makeFilled(gpu_, std::vector<uint32_t>(1 + kBuckets), read);
-    buffers_[kClaims] = makeBuffer(gpu_, push.agents * sizeof(Claim), storage, Where::device);
-    buffers_[kQueries] = makeBuffer(gpu_, push.agents * sizeof(radar::HostQuery), read, Where::device);
+    buffers_[kAsked] = makeBuffer(gpu_, sizeof(uint32_t), read | Usage::eTransferDst);
+    buffers_[kQueries] = makeBuffer(gpu_, push.agents * sizeof(radar::HostQuery), read);
     places_ = {.transforms = *buffers_[kTransforms].handle, .count = push.agents};
-    queries_ = {
-        .buffer = *buffers_[kQueries].handle, .count = push.agents, .countBuffer = *buffers_[kGridCells].handle};
+    queries_ = {.buffer = *buffers_[kQueries].handle, .count = push.agents, .countBuffer = *buffers_[kAsked].handle};
   }
 
   void makeLayout() {
     std::array<vk::DescriptorSetLayoutBinding, kBindings> bindings;
     for (uint32_t i = 0; i < kBindings; ++i) bindings[i] = {i, vk::DescriptorType::eStorageBuffer, 1, kStages, nullptr};
     setLayout_ = gpu_.device.createDescriptorSetLayout({.bindingCount = kBindings, .pBindings = bindings.data()});
-    const vk::PushConstantRange range{kPushStages, 0, sizeof(Push)};
+    const vk::PushConstantRange range{kStages, 0, sizeof(Push)};
     layout_ = gpu_.device.createPipelineLayout(
         {.setLayoutCount = 1, .pSetLayouts = &*setLayout_, .pushConstantRangeCount = 1, .pPushConstantRanges = &range});
     const vk::DescriptorPoolSize size{vk::DescriptorType::eStorageBuffer, kBindings * kFramesInFlight};
@@ -119,7 +112,7 @@ class Agents {
 
   Slot makeSlot() {
     radar::Recorder recorder(copy_, {.queries = push.agents});
-    recorder.prepare(queries_, geometry());
+    recorder.prepare(queries_, {.objects = {&places_, 1}});
     vk::raii::DescriptorSet set = std::move(gpu_.device.allocateDescriptorSets(
         {.descriptorPool = *sets_, .descriptorSetCount = 1, .pSetLayouts = &*setLayout_})[0]);
     for (uint32_t i = 0; i < kBindings; ++i) {
@@ -133,16 +126,13 @@ class Agents {
                                                               .pBufferInfo = &info},
                                        nullptr);
     }
-    return {std::move(recorder), std::move(set),
-            makeBuffer(gpu_, buffers_[kAgents].size, Usage::eTransferDst, Where::host)};
+    return {std::move(recorder), std::move(set), makeBuffer(gpu_, buffers_[kAgents].size, Usage::eTransferDst)};
   }
 
   void dispatch(const vk::raii::CommandBuffer& commands, uint32_t slot, const vk::raii::Pipeline& pipeline) const {
     bind(commands, slot, vk::PipelineBindPoint::eCompute, pipeline);
     commands.dispatch((push.agents + 63) / 64, 1, 1);
   }
-
-  radar::HostGeometry geometry() const { return {.objects = {&places_, 1}}; }
 
   const Gpu& gpu_;
   World& world_;
@@ -152,7 +142,7 @@ class Agents {
   vk::raii::DescriptorSetLayout setLayout_ = nullptr;
   vk::raii::DescriptorPool sets_ = nullptr;
   vk::raii::PipelineLayout layout_ = nullptr;
-  vk::raii::Pipeline claim_ = nullptr, ask_ = nullptr, move_ = nullptr;
+  vk::raii::Pipeline ask_ = nullptr, move_ = nullptr;
   // What the device writes, and the engine reads: where all agents are, and the queries.
   radar::MovedObjects places_;
   radar::HostQueries queries_;

@@ -1,5 +1,4 @@
-// A small host's own Vulkan: a device with one queue, buffers, images, pipelines, and the one place where barriers are
-// made.
+// A small host's own Vulkan: a device with one queue, buffers, images, pipelines and barriers.
 #pragma once
 
 #include <cstring>
@@ -66,43 +65,29 @@ inline vk::raii::DeviceMemory allocate(const Gpu& gpu, const vk::MemoryRequireme
   throw radar::Error("the device has no memory of the kind needed");
 }
 
+/// For shaders, the engine and the CPU. A renderer would keep most in memory that only the device sees.
 struct Buffer {
   vk::raii::DeviceMemory memory = nullptr;
   vk::raii::Buffer handle = nullptr;
   vk::DeviceSize size = 0;
-  std::byte* mapped = nullptr;  ///< null on the device
+  void* mapped = nullptr;
 };
-enum class Where { device, host };
 
-inline Buffer makeBuffer(const Gpu& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, Where where) {
+inline Buffer makeBuffer(const Gpu& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage) {
   Buffer buffer;
   buffer.size = size;
   buffer.handle = gpu.device.createBuffer({.size = size, .usage = usage});
-  const bool onHost = where == Where::host;
-  const auto visible = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
-  buffer.memory = allocate(gpu, buffer.handle.getMemoryRequirements(), onHost ? visible : vk::MemoryPropertyFlags());
+  buffer.memory = allocate(gpu, buffer.handle.getMemoryRequirements(),
+                           vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent);
   buffer.handle.bindMemory(*buffer.memory, 0);
-  if (onHost) buffer.mapped = static_cast<std::byte*>(buffer.memory.mapMemory(0, VK_WHOLE_SIZE));
+  buffer.mapped = buffer.memory.mapMemory(0, VK_WHOLE_SIZE);
   return buffer;
 }
 
-inline vk::raii::CommandBuffer makeCommands(const Gpu& gpu) {
-  return std::move(gpu.device.allocateCommandBuffers({.commandPool = *gpu.pool, .commandBufferCount = 1})[0]);
-}
-
-/// A buffer on the device with these values; waits.
 template <typename T>
 Buffer makeFilled(const Gpu& gpu, const std::vector<T>& values, vk::BufferUsageFlags usage) {
-  const size_t bytes = sizeof(T) * values.size();
-  Buffer buffer = makeBuffer(gpu, bytes, usage | vk::BufferUsageFlagBits::eTransferDst, Where::device);
-  const Buffer staging = makeBuffer(gpu, bytes, vk::BufferUsageFlagBits::eTransferSrc, Where::host);
-  std::memcpy(staging.mapped, values.data(), bytes);
-  const vk::raii::CommandBuffer commands = makeCommands(gpu);
-  commands.begin({});
-  commands.copyBuffer(*staging.handle, *buffer.handle, vk::BufferCopy{.size = bytes});
-  commands.end();
-  gpu.queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &*commands});
-  gpu.queue.waitIdle();
+  Buffer buffer = makeBuffer(gpu, sizeof(T) * values.size(), usage);
+  std::memcpy(buffer.mapped, values.data(), buffer.size);
   return buffer;
 }
 
@@ -145,22 +130,24 @@ inline vk::raii::Pipeline makeCompute(const Gpu& gpu, vk::PipelineLayout layout,
   return gpu.device.createComputePipeline(nullptr, {.stage = stage, .layout = layout});
 }
 
-inline vk::raii::Pipeline makeGraphics(const Gpu& gpu, vk::PipelineLayout layout, Code vertex, Code fragment) {
+inline vk::raii::Pipeline makeGraphics(const Gpu& gpu, vk::PipelineLayout layout, Code vertex, Code fragment,
+                                       vk::Extent2D size) {
   const vk::raii::ShaderModule modules[] = {makeModule(gpu, vertex), makeModule(gpu, fragment)};
   const vk::PipelineShaderStageCreateInfo stages[] = {
       {.stage = vk::ShaderStageFlagBits::eVertex, .module = *modules[0], .pName = "main"},
       {.stage = vk::ShaderStageFlagBits::eFragment, .module = *modules[1], .pName = "main"}};
   const vk::PipelineVertexInputStateCreateInfo fetched;
   const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
-  const vk::PipelineViewportStateCreateInfo viewport{.viewportCount = 1, .scissorCount = 1};
+  const vk::Viewport all{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, 1};
+  const vk::Rect2D area{{}, size};
+  const vk::PipelineViewportStateCreateInfo viewport{
+      .viewportCount = 1, .pViewports = &all, .scissorCount = 1, .pScissors = &area};
   const vk::PipelineRasterizationStateCreateInfo raster{.lineWidth = 1};
   const vk::PipelineMultisampleStateCreateInfo samples{.rasterizationSamples = kSamples};
   const vk::PipelineDepthStencilStateCreateInfo depth{
       .depthTestEnable = VK_TRUE, .depthWriteEnable = VK_TRUE, .depthCompareOp = vk::CompareOp::eLess};
   const vk::PipelineColorBlendAttachmentState opaque{.colorWriteMask = vk::ColorComponentFlags(0xf)};
   const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = 1, .pAttachments = &opaque};
-  const vk::DynamicState states[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
-  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = 2, .pDynamicStates = states};
   const vk::PipelineRenderingCreateInfo rendering{
       .colorAttachmentCount = 1, .pColorAttachmentFormats = &kColour, .depthAttachmentFormat = kDepth};
   return gpu.device.createGraphicsPipeline(nullptr, {.pNext = &rendering,
@@ -173,7 +160,6 @@ inline vk::raii::Pipeline makeGraphics(const Gpu& gpu, vk::PipelineLayout layout
                                                      .pMultisampleState = &samples,
                                                      .pDepthStencilState = &depth,
                                                      .pColorBlendState = &blend,
-                                                     .pDynamicState = &dynamic,
                                                      .layout = layout});
 }
 

@@ -9,9 +9,9 @@
 
 #include "window.h"
 
-namespace example {
-
 namespace {
+
+using namespace example;
 
 constexpr vk::Extent2D kSize{960, 540};
 constexpr uint32_t kPictureEvery = 50;
@@ -20,19 +20,14 @@ void runHeadless(uint32_t agents, uint32_t frames, const std::string& folder) {
   World world(agents);
   const Gpu gpu({});
   Renderer renderer(gpu, world, kSize);
-  const Buffer pixels =
-      makeBuffer(gpu, 4 * kSize.width * kSize.height, vk::BufferUsageFlagBits::eTransferDst, Where::host);
+  const Buffer pixels = makeBuffer(gpu, 4 * kSize.width * kSize.height, vk::BufferUsageFlagBits::eTransferDst);
   const auto copy = [&](const vk::raii::CommandBuffer& commands, vk::Image image) {
     const vk::BufferImageCopy whole{.imageSubresource = {vk::ImageAspectFlagBits::eColor, 0, 0, 1},
                                     .imageExtent = {kSize.width, kSize.height, 1}};
     commands.copyImageToBuffer(image, vk::ImageLayout::eTransferSrcOptimal, *pixels.handle, whole);
     barrier(commands, kCopy, kCpu);
   };
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = kSize.width;
-  png.height = kSize.height;
-  png.format = PNG_FORMAT_RGBA;
+  png_image png{nullptr, PNG_IMAGE_VERSION, kSize.width, kSize.height, PNG_FORMAT_RGBA, 0, 0, 0, {}};
   for (uint32_t frame = 1; frame <= frames; ++frame) {
     const bool isShown = frame % kPictureEvery == 0;
     renderer.frame(isShown ? Output(copy) : Output());
@@ -56,14 +51,11 @@ void runWindow(uint32_t agents, uint32_t frames) {
 
 }  // namespace
 
-}  // namespace example
-
 int main(int count, char** arguments) try {
   const auto number = [&](int i) { return static_cast<uint32_t>(std::stoul(count > i ? arguments[i] : "")); };
   const uint32_t agents = number(1), frames = count > 2 ? number(2) : ~0u;
   if (agents < 1 || agents > 100000 || count > 4) throw std::out_of_range("main");
-  count > 3 ? example::runHeadless(agents, frames, arguments[3]) : example::runWindow(agents, frames);
-  return 0;
+  count > 3 ? runHeadless(agents, frames, arguments[3]) : runWindow(agents, frames);
 } catch (const std::logic_error&) {
   std::fputs("radar-example-renderer: expected AGENTS (1 to 100000) [FRAMES [FOLDER]]\n", stderr);
   return 2;

@@ -9,24 +9,16 @@ layout(location = 1) in vec4 colour;
 layout(location = 0) out vec4 shown;
 layout(push_constant, scalar) uniform Constants { Push push; };
 
-// 1 where `at` is less than `most`, 0 where it is more; `wide`, a pixel, in between.
-float below(float at, float most, float wide) {
-  return 1.0 - smoothstep(most - wide, most + wide, at);
-}
-
-// Windows give walls a scale; pavements and roads, a paved square in the middle, and grass around.
+// Windows give walls a scale; asphalt, and grass around.
 vec3 surfaceOf(vec3 normal) {
   const vec2 at = vec2(abs(normal.x) > 0.5 ? world.y : world.x, world.z) / vec2(1.1, 1.5);
   const vec2 wide = fwidth(at), off = abs(fract(at) - 0.5);
-  const float pane = below(off.x, 0.3, wide.x) * below(off.y, 0.32, wide.y);
-  const vec2 block = abs(fract(world.xy / kPitch) - 0.5) * kPitch, middle = abs(world.xy);
-  const float pixel = max(fwidth(world.x), fwidth(world.y)), city = max(middle.x, middle.y);
+  const vec2 pane = 1.0 - smoothstep(vec2(0.3) - wide, vec2(0.3) + wide, off);
   if (abs(normal.z) < 0.5)
-    return mix(colour.rgb, vec3(0.05, 0.08, 0.12), 0.85 * mix(pane, 0.38, smoothstep(0.25, 0.8, max(wide.x, wide.y))));
+    return mix(colour.rgb, vec3(0.05, 0.08, 0.12), 0.85 * mix(pane.x * pane.y, 0.38, smoothstep(0.25, 0.8, max(wide.x, wide.y))));
   if (world.z > 0.5) return colour.rgb;
-  const float paved = max(below(max(block.x, block.y), 6.4, pixel), below(city, 15.4, pixel));
-  const vec3 ground = mix(vec3(0.075, 0.08, 0.09), vec3(0.30, 0.29, 0.27), paved);
-  return mix(ground, vec3(0.10, 0.20, 0.035), smoothstep(0.0, 1.5, city - push.city));
+  const float outside = max(abs(world.x), abs(world.y)) - push.city;
+  return mix(vec3(0.16, 0.165, 0.17), vec3(0.10, 0.20, 0.035), smoothstep(0.0, 1.5, outside));
 }
 
 void main() {

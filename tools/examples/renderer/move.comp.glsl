@@ -6,11 +6,12 @@
 #include "radar/query.glsl"
 #include "radar/result.glsl"
 #include "shared.h"
-#include "grid.glsl"
+#include "random.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(scalar, binding = kAgents) buffer Agents { Agent agents[]; };
+layout(scalar, binding = kAsked) readonly buffer Asked { uint asked; };
 layout(std430, binding = kQueries) readonly buffer Queries { RadarQuery queries[]; };
 layout(scalar, binding = kResults) readonly buffer Results { RadarResult results[]; };
 layout(scalar, binding = kTransforms) writeonly buffer Transforms { vec4 transforms[]; };
@@ -20,16 +21,12 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= asked) return;
   const RadarQuery query = queries[i];
-  const RadarResult result = results[i];
   const uint id = query.exclude;
   Agent agent = agents[id];
-  const float free = radarFree(result, kReach), stride = length(query.direction);
+  const float free = radarFree(results[i], kReach), stride = length(query.direction);
   const float strides = clamp(floor((free - kSkin) / stride), 0.0, float(kStrides));
   agent.place += strides * query.direction;
   agent.clear = free - strides * stride;
-  agent.normal = vec3(0.0);  // unknown where the device could not decide
-  if (result.status == RADAR_STATUS_hit && result.flags == 0)
-    agent.normal = vec3(radarFloat(result.normal[0]), radarFloat(result.normal[1]), radarFloat(result.normal[2]));
   // Now and then, and sooner if something is in the way, another goal.
   if (hash(id, push.frame) % (agent.clear < 1.0 ? 20u : 500u) == 0) ++agent.goal;
   agents[id] = agent;

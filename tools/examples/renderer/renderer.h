@@ -21,9 +21,10 @@ class Renderer {
     depth_ = makeImage(gpu, size, kDepth, kSamples, Usage::eDepthStencilAttachment);
     picture_ =
         makeImage(gpu, size, kColour, vk::SampleCountFlagBits::e1, Usage::eColorAttachment | Usage::eTransferSrc);
-    mesh_ = makeGraphics(gpu, agents_.layout(), k_mesh_vert, k_mesh_frag);
+    mesh_ = makeGraphics(gpu, agents_.layout(), k_mesh_vert, k_mesh_frag, size);
     for (Slot& slot : slots_)
-      slot = {makeCommands(gpu), gpu.device.createFence({.flags = vk::FenceCreateFlagBits::eSignaled})};
+      slot = {std::move(gpu.device.allocateCommandBuffers({.commandPool = *gpu.pool, .commandBufferCount = 1})[0]),
+              gpu.device.createFence({.flags = vk::FenceCreateFlagBits::eSignaled})};
   }
   ~Renderer() { gpu_.device.waitIdle(); }
 
@@ -97,15 +98,11 @@ class Renderer {
                                             .imageLayout = Layout::eDepthStencilAttachmentOptimal,
                                             .loadOp = vk::AttachmentLoadOp::eClear,
                                             .clearValue = {.depthStencil = {1, 0}}};
-    const vk::Rect2D area{{}, size_};
-    commands.beginRendering({.renderArea = area,
+    commands.beginRendering({.renderArea = {{}, size_},
                              .layerCount = 1,
                              .colorAttachmentCount = 1,
                              .pColorAttachments = &colour,
                              .pDepthAttachment = &depth});
-    commands.setViewport(0,
-                         vk::Viewport{0, 0, static_cast<float>(size_.width), static_cast<float>(size_.height), 0, 1});
-    commands.setScissor(0, area);
     agents_.bind(commands, slot, vk::PipelineBindPoint::eGraphics, mesh_);
     const auto ofAgent = static_cast<uint32_t>(world_.agent.size());
     const uint32_t agents = agents_.push.agents, objects = static_cast<uint32_t>(world_.transforms.size());

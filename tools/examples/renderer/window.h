@@ -50,7 +50,7 @@ class Window {
          .compositeAlpha = vk::CompositeAlphaFlagBitsKHR::eOpaque,
          .presentMode = vk::PresentModeKHR::eFifo,
          .clipped = VK_TRUE});
-    for (const VkImage image : swapchain_.getImages()) images_.push_back({image, gpu.device.createSemaphore({})});
+    for (size_t i = 0; i < swapchain_.getImages().size(); ++i) drawn_.push_back(gpu.device.createSemaphore({}));
     for (vk::raii::Semaphore& semaphore : acquired_) semaphore = gpu.device.createSemaphore({});
   }
   ~Window() { gpu_.device.waitIdle(); }
@@ -64,7 +64,7 @@ class Window {
   void show(Renderer& renderer) {
     const vk::Semaphore acquired = *acquired_[count_++ % acquired_.size()];
     const uint32_t index = swapchain_.acquireNextImage(UINT64_MAX, acquired).second;
-    const vk::Image image = images_[index].handle;
+    const vk::Image image = swapchain_.getImages()[index];
     const auto record = [&](const vk::raii::CommandBuffer& commands, vk::Image picture) {
       using Layout = vk::ImageLayout;
       barrier(commands, image, {kCopy.stages, 0}, Layout::eUndefined, kCopy, Layout::eTransferDstOptimal);
@@ -75,26 +75,21 @@ class Window {
                          vk::ImageBlit{colour, whole, colour, whole}, vk::Filter::eNearest);
       barrier(commands, image, kCopy, Layout::eTransferDstOptimal, {kCopy.stages, 0}, Layout::ePresentSrcKHR);
     };
-    renderer.frame(record, acquired, *images_[index].drawn);
+    renderer.frame(record, acquired, *drawn_[index]);
     (void)gpu_.queue.presentKHR({.waitSemaphoreCount = 1,
-                                 .pWaitSemaphores = &*images_[index].drawn,
+                                 .pWaitSemaphores = &*drawn_[index],
                                  .swapchainCount = 1,
                                  .pSwapchains = &*swapchain_,
                                  .pImageIndices = &index});
   }
 
  private:
-  struct Shown {
-    vk::Image handle;
-    vk::raii::Semaphore drawn;
-  };
-
   const Gpu& gpu_;
   std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_{nullptr, glfwDestroyWindow};
   vk::raii::SurfaceKHR surface_ = nullptr;
   vk::raii::SwapchainKHR swapchain_ = nullptr;
   vk::Extent2D size_;
-  std::vector<Shown> images_;
+  std::vector<vk::raii::Semaphore> drawn_;
   // A frame's semaphore is free again once the frame after the next has been submitted.
   std::array<vk::raii::Semaphore, kFramesInFlight + 1> acquired_{nullptr, nullptr, nullptr};
   uint32_t count_ = 0;

@@ -52,7 +52,6 @@ class World {
     addBox(building, {0, 0, 0.5f}, {0.5f, 0.5f, 0.5f});
     agentMesh = addMesh(agent);
     buildingMesh = addMesh(building);
-    for (const vec3& v : agent) radius = std::max(radius, std::hypot(v[0], v[1], v[2]) + 0.001f);
 
     // Agents first, layer upon layer.
     const float spacing = 2.5f, highest = 48;
@@ -60,7 +59,7 @@ class World {
     for (uint32_t i = 0; i < count; ++i) {
       const auto along = [&](uint32_t k) { return spacing * static_cast<float>(k % row) - half; };
       const vec3 place{along(i), along(i / row), highest + spacing * static_cast<float>(i / row / row)};
-      agents.push_back({.place = place, .clear = kReach, .normal = {}, .goal = 0});
+      agents.push_back({.place = place, .clear = kReach, .goal = 0});
       addObject(agentMesh, place, {1, 1, 1});
     }
 
@@ -100,7 +99,6 @@ class World {
   radar::MeshId agentMesh, buildingMesh;
   std::vector<Agent> agents;                      ///< at the beginning
   std::vector<std::array<float, 12>> transforms;  ///< of all objects, at the beginning
-  float radius = 0;                               ///< of a sphere around an agent's place that contains it
   float half;                                     ///< of the city's side
 
  private:

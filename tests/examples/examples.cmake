@@ -22,7 +22,7 @@ else()
   set(pictures ${CMAKE_CURRENT_BINARY_DIR}/pictures)
   file(MAKE_DIRECTORY ${pictures})
   set(flawless "queries: [1-9][0-9]+, without an answer: 0\nchecks by the CPU:")
-  radar_example("the renderer's agents never cross" "${flawless} 6, crossings: 0\n" radar-example-renderer 100 300 ${pictures})
+  radar_example("the renderer's agents never cross" "${flawless} 12, crossings: 0\n" radar-example-renderer 200 600 ${pictures})
   radar_example("the renderer opens a window" "${flawless} 1, crossings: 0\n"
     ${XVFB_RUN} -a -s "-screen 0 1024x768x24" $<TARGET_FILE:radar-example-renderer> 50 60)
 endif()

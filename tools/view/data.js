@@ -1,9 +1,32 @@
-// What the page shows, decoded: meshes, scenes, queries and their answers.
+// What the page shows, decoded: scenes, queries and their answers.
+
+import { Bounds, nearTogether } from "./extent.js";
+import { Mesh, Placed } from "./meshes.js";
+import { lengthOf, plus, times } from "./vectors.js";
+
+/**
+ * What page.cpp writes, of n things n numbers, or as many times as many as stated. By query: only of those that have some.
+ * @typedef {import("./meshes.js").Poses} Poses
+ * @typedef {Poses & {id: string, base: ?number, number: Uint32Array, names: Record<number, string>, moving: Uint32Array,
+ *   ways: Float64Array, deforms: {mesh: number, positions: Float32Array}[]}} SceneRow  ways: 3
+ * @typedef {Poses & {count: number, id: string[], scene: Uint32Array, way: Float64Array, whole: Float64Array,
+ *   step: Uint8Array, ignored: Record<number, number[]>,
+ *   asked: Record<number, Record<string, number | string | boolean>>}} Queries  way: 3; asked: options given
+ * @typedef {{status: Uint8Array, t: Float64Array, lo: Float64Array, hi: Float64Array, object: Uint32Array,
+ *   triA: Uint32Array, triB: Uint32Array, point: Float64Array, normal: Float64Array, gap: Float64Array}} Answers
+ *   point, normal: 3
+ * @typedef {{width: number, height: number, pixel: number, d: number, length: number, R: Float32Array, M: Float32Array,
+ *   L: Float32Array, origin: number[], right: number[], up: number[], forward: number[]}} Scopes
+ * @typedef {{title: string, notes: string[], tour: {query?: number, play?: string}[], none: number, statuses: string[],
+ *   meshes: object[], scenes: SceneRow[], queries: Queries, answers: Answers, left: Record<number, number[]>,
+ *   reasons: Record<number, string>, others: Record<number, {words: string, t: ?number, object: number}>,
+ *   scopes: Record<number, Scopes>}} Written
+ */
 
 // {"f4": "..."}: little-endian numbers in base64, of the type that numpy calls so.
 const ARRAYS = { u1: Uint8Array, u4: Uint32Array, f4: Float32Array, f8: Float64Array };
 
-function decodeArray(key, value) {
+function decodeArray(_, value) {
   for (const type in ARRAYS) {
     if (typeof value?.[type] !== "string") continue;
     const text = atob(value[type]);
@@ -14,111 +37,6 @@ function decodeArray(key, value) {
   return value;
 }
 
-/** A triangle mesh with the sphere around its box. */
-class Mesh {
-  /** `isBox`: only the box of a mesh of so many triangles is known. */
-  constructor({ name, positions, indices, triangles = indices.length / 3, isBox = false }) {
-    Object.assign(this, { name, positions, indices, triangles, isBox, drawn: indices.length / 3 });
-    const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
-    for (const vertex of indices) {
-      for (let k = 0; k < 3; ++k) {
-        const value = positions[3 * vertex + k];
-        lo[k] = Math.min(lo[k], value);
-        hi[k] = Math.max(hi[k], value);
-      }
-    }
-    this.middle = lo.map((low, k) => 0.5 * (low + hi[k]) || 0);
-    this.half = lo.map((low, k) => 0.5 * (hi[k] - low) || 0);
-  }
-  corners(triangle) {
-    return [0, 1, 2].map((i) => {
-      const vertex = this.indices[3 * triangle + i];
-      return [...this.positions.subarray(3 * vertex, 3 * vertex + 3)];
-    });
-  }
-  /** Whether a triangle crosses start + s * way, 0 < s < 0.998. */
-  isCrossed([sx, sy, sz], [wx, wy, wz]) {
-    const { positions: p, indices } = this;
-    // By T. Moeller and B. Trumbore (1997); without arrays that live for a triangle.
-    for (let t = 0; t < indices.length; t += 3) {
-      const a = 3 * indices[t], b = 3 * indices[t + 1], c = 3 * indices[t + 2];
-      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
-      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
-      const nx = wy * vz - wz * vy, ny = wz * vx - wx * vz, nz = wx * vy - wy * vx, volume = ux * nx + uy * ny + uz * nz;
-      const x = sx - p[a], y = sy - p[a + 1], z = sz - p[a + 2], u = (x * nx + y * ny + z * nz) / volume;
-      if (!(u >= 0 && u <= 1)) continue;
-      const qx = y * uz - z * uy, qy = z * ux - x * uz, qz = x * uy - y * ux, v = (wx * qx + wy * qy + wz * qz) / volume;
-      if (!(v >= 0 && u + v <= 1)) continue;
-      const s = (vx * qx + vy * qy + vz * qz) / volume;
-      if (s > 0 && s < 0.998) return true;
-    }
-    return false;
-  }
-  /** Pairs of points: the edges with one triangle, and those where two meet at more than 30 degrees. */
-  creases() {
-    this.creaseLines ??= creasesOf(this);
-    return this.creaseLines;
-  }
-}
-
-function creasesOf(mesh) {
-  const found = new Map(), ids = new Map(), lines = [];
-  // Vertices at one place are one, since the triangles of some files share none.
-  const idOf = (p) => {
-    const key = p.join();
-    if (!ids.has(key)) ids.set(key, ids.size);
-    return ids.get(key);
-  };
-  for (let t = 0; t < mesh.drawn; ++t) {
-    const corners = mesh.corners(t), id = corners.map(idOf);
-    const normal = unit(cross(minus(corners[1], corners[0]), minus(corners[2], corners[0])));
-    for (let i = 0; i < 3; ++i) {
-      const j = (i + 1) % 3, key = Math.min(id[i], id[j]) * 2 ** 26 + Math.max(id[i], id[j]);
-      if (!found.has(key)) found.set(key, { from: corners[i], to: corners[j], normal, isCrease: true });
-      else found.get(key).isCrease = Math.abs(dot(found.get(key).normal, normal)) < 0.866;
-    }
-  }
-  for (const { from, to, isCrease } of found.values()) if (isCrease) lines.push([from, to]);
-  return lines;
-}
-
-/** Things in a row: of each a mesh, among those that `meshesOf` gives for it, and a pose, world = linear * local + at. */
-class Placed {
-  constructor(meshesOf, { mesh, linear, at }) {
-    Object.assign(this, { meshesOf, mesh, linear, at, count: mesh.length });
-    this.centre = new Float64Array(3 * this.count);
-    this.radius = new Float64Array(this.count);
-    for (let i = 0; i < this.count; ++i) {
-      const { middle, half } = this.meshOf(i);
-      const sides = [0, 0, 0];
-      for (let k = 0; k < 3; ++k) {
-        const row = linear.subarray(9 * i + 3 * k, 9 * i + 3 * k + 3);
-        this.centre[3 * i + k] = at[3 * i + k] + dot(row, middle);
-        sides[k] = row.reduce((sum, value, j) => sum + Math.abs(value) * half[j], 0);
-      }
-      this.radius[i] = lengthOf(sides);
-    }
-  }
-  meshOf(i) {
-    return this.meshesOf(i)[this.mesh[i]];
-  }
-  centreOf(i) {
-    return [...this.centre.subarray(3 * i, 3 * i + 3)];
-  }
-  /** Whether a triangle crosses a segment, short of its end. */
-  crosses(i, from, to) {
-    const linear = this.linear.subarray(9 * i, 9 * i + 9), rows = [0, 1, 2].map((k) => [...linear.subarray(3 * k, 3 * k + 3)]);
-    const [a, b, c] = rows, columns = [cross(b, c), cross(c, a), cross(a, b)], volume = dot(a, columns[0]);
-    if (!(Math.abs(volume) > 0)) return false;
-    const toLocal = (v) => [0, 1, 2].map((k) => (v[0] * columns[0][k] + v[1] * columns[1][k] + v[2] * columns[2][k]) / volume);
-    const start = toLocal(minus(from, this.at.subarray(3 * i, 3 * i + 3)));
-    return this.meshOf(i).isCrossed(start, toLocal(minus(to, from)));
-  }
-  toWorld(i, point) {
-    return [0, 1, 2].map((k) => this.at[3 * i + k] + dot(this.linear.subarray(9 * i + 3 * k, 9 * i + 3 * k + 3), point));
-  }
-}
-
 function joined(first, second) {
   const all = new first.constructor(first.length + second.length);
   all.set(first);
@@ -126,12 +44,96 @@ function joined(first, second) {
   return all;
 }
 
-class Data {
+/** An answer to a query. Ids are Data.none, numbers NaN, where there is none. */
+export class Answer {
+  /**
+   * @param {Data} data
+   * @param {number} query
+   * @param {Answers} from
+   * @param {number} i
+   */
+  constructor(data, query, from, i) {
+    const asked = data.queries.asked[query] ?? {};
+    this.data = data;
+    this.query = query;
+    this.status = data.statuses[from.status[i]];
+    this.t = from.t[i];
+    this.lo = from.lo[i];
+    this.hi = from.hi[i];
+    this.object = from.object[i];
+    this.triA = from.triA[i];
+    this.triB = from.triB[i];
+    this.point = [...from.point.subarray(3 * i, 3 * i + 3)];
+    this.normal = [...from.normal.subarray(3 * i, 3 * i + 3)];
+    this.hasPoint = this.point.every(Number.isFinite);
+    this.hasNormal = this.normal.every(Number.isFinite);
+    /** Whether only that is known. */
+    this.saysOnlyWhether = this.status === "hit" && asked.decide === true;
+    /** When it touches something; NaN if it is not known. */
+    this.time = Number.isFinite(this.t) && !this.saysOnlyWhether && this.status !== "undecided" ? this.t : NaN;
+    this.clearance = Number(asked.clearance ?? 0);
+    /** Counts only what blocks. */
+    this.leaves = asked.ignore_leaving === true;
+    /** The distance of the surfaces then; NaN if it is not known. */
+    this.gap = this.clearance > 0 && !this.saysOnlyWhether ? from.gap[i] : 0;
+    /** Of its bracket; NaN if it says nothing. */
+    this.width = this.saysOnlyWhether ? NaN : this.hi - this.lo;
+  }
+  /** Its status; "part" if it is clear of all but what was left out. */
+  get kind() {
+    return this.status === "clear" && this.data.left[this.query] ? "part" : this.status;
+  }
+  /**
+   * The part of its way that a sensor can go, 0 to 1; of a free way, no more than leads out of the scene. 0 where it is
+   * not known.
+   */
+  get share() {
+    const { data, query } = this;
+    if (this.saysOnlyWhether) return 0;
+    switch (this.status) {
+      case "hit": return data.fractionOf(query, this.t);
+      case "undecided": return data.fractionOf(query, this.lo);
+      case "clear": return Math.min(1, data.reach(data.queries.scene[query]) / (lengthOf(data.way(query)) || 1));
+    }
+    return 0;
+  }
+  /** The same of another mode's answer, if it touches something; else null. */
+  get otherShare() {
+    const other = this.data.others[this.query];
+    return other && other.t !== null ? this.data.fractionOf(this.query, other.t) : null;
+  }
+  /** The object touched, by this answer or by another mode's. */
+  get touched() {
+    const other = this.data.others[this.query];
+    return this.object === this.data.none && other ? other.object : this.object;
+  }
+}
+
+export class Data {
+  /** @param {string} text */
   constructor(text) {
-    Object.assign(this, JSON.parse(text, decodeArray));
-    this.meshes = this.meshes.map((mesh) => new Mesh(mesh));
+    /** @type {Written} */
+    const written = JSON.parse(text, decodeArray);
+    this.title = written.title;
+    this.notes = written.notes;
+    this.tour = written.tour;
+    this.none = written.none;
+    this.statuses = written.statuses;
+    this.scenes = written.scenes;
+    this.queries = written.queries;
+    this.left = written.left;
+    this.reasons = written.reasons;
+    this.others = written.others;
+    this.scopes = written.scopes;
+    this.meshes = written.meshes.map((mesh) => new Mesh(/** @type {Mesh} */ (mesh)));
+    /** @type {Map<number, ReturnType<Data["makeScene"]>>} */
     this.shown = new Map();
     this.sensors = new Placed((i) => this.scene(this.queries.scene[i]).meshes, this.queries);
+    this.answers = Array.from({ length: this.queries.count }, (_, query) => new Answer(this, query, written.answers, query));
+    /** @type {?number[]} */
+    this.own = null;
+    /** The latest of their times. */
+    this.latest = this.answers.reduce((latest, { time }) => Math.max(latest, time || 0), 0);
   }
   /** The meshes of a scene, some deformed; its objects, as Placed; and how each moves during a step. */
   scene(number) {
@@ -144,14 +146,17 @@ class Data {
     for (const { mesh, positions } of own.deforms) {
       meshes[mesh] = new Mesh({ ...meshes[mesh], positions });
     }
-    const parts = ["mesh", "linear", "at", "number"];
-    const objects = Object.fromEntries(parts.map((p) => [p, base ? joined(base[p], own[p]) : own[p]]));
-    const placed = new Placed(() => meshes, objects);
-    placed.number = objects.number;
-    placed.place = new Map([...objects.number].map((object, i) => [object, i]));
+    const both = (part) => (base ? joined(base[part], own[part]) : own[part]);
+    const objects = new Placed(() => meshes, { mesh: both("mesh"), linear: both("linear"), at: both("at") });
+    /** @type {Uint32Array} */
+    const numbers = both("number");
+    /** From the number of an object to where it is in `objects`. */
+    const place = new Map([...numbers].map((object, i) => [object, i]));
     const ways = new Map();
-    own.moving.forEach((object, i) => ways.set(placed.place.get(object), own.ways.subarray(3 * i, 3 * i + 3)));
-    return { meshes, objects: placed, ways };
+    own.moving.forEach((object, i) => ways.set(place.get(object), own.ways.subarray(3 * i, 3 * i + 3)));
+    /** @type {?ReturnType<Data["extentOf"]>} */
+    const extent = null;
+    return { meshes, objects, numbers, place, ways, extent };
   }
   /** What of a scene is near together, and how much is far from it: {bounds, far: {objects, sensors}}. */
   extent(number) {
@@ -164,10 +169,10 @@ class Data {
       things.push({ place, radius: placed.radius[i] + 0.5 * lengthOf(way), isSensor });
     };
     for (let i = 0; i < objects.count; ++i) add(objects, i, [0, 0, 0], false);
-    for (let i = 0; i < this.queries.count; ++i) {
-      if (this.queries.scene[i] !== number) continue;
-      const share = this.status(i) === "clear" ? 0 : this.share(i);
-      add(this.sensors, i, share > 0 ? times(share, this.way(i)) : [0, 0, 0], true);
+    for (const answer of this.answers) {
+      if (this.queries.scene[answer.query] !== number) continue;
+      const share = answer.status === "clear" ? 0 : answer.share;
+      add(this.sensors, answer.query, share > 0 ? times(share, this.way(answer.query)) : [0, 0, 0], true);
     }
     const { near, far } = nearTogether(things), bounds = new Bounds(), sensors = far.filter(({ isSensor }) => isSensor).length;
     for (const { place, radius } of near) bounds.add(place, radius);
@@ -183,11 +188,11 @@ class Data {
     return this.own[query];
   }
   findOwn(query) {
-    const { objects } = this.scene(this.queries.scene[query]), { sensors } = this;
+    const { objects, place } = this.scene(this.queries.scene[query]), { sensors } = this;
     const isSame = (i) => i !== undefined && objects.mesh[i] === sensors.mesh[query] &&
       [0, 1, 2].every((k) => objects.at[3 * i + k] === sensors.at[3 * query + k]) &&
       objects.linear.subarray(9 * i, 9 * i + 9).every((value, k) => value === sensors.linear[9 * query + k]);
-    return (this.queries.ignored[query] ?? []).map((object) => objects.place.get(object)).find(isSame);
+    return (this.queries.ignored[query] ?? []).map((object) => place.get(object)).find(isSame);
   }
   /** An object's own name, or none. */
   nameOf(scene, object) {
@@ -195,61 +200,9 @@ class Data {
   }
   /** "object 3 (lid)": its own name, or that of its mesh. */
   called(scene, object) {
-    const { objects } = this.scene(scene), place = objects.place.get(object);
-    const name = this.nameOf(scene, object) || (place === undefined ? "" : objects.meshOf(place).name);
+    const { objects, place } = this.scene(scene), i = place.get(object);
+    const name = this.nameOf(scene, object) || (i === undefined ? "" : objects.meshOf(i).name);
     return `object ${object}${name ? ` (${name})` : ""}`;
-  }
-  status(query) {
-    return this.statuses[this.answers.status[query]];
-  }
-  /** Its status; "part" if it is clear of all but what was left out. */
-  kind(query) {
-    const status = this.status(query);
-    return status === "clear" && this.left[query] ? "part" : status;
-  }
-  /** Whether only that is known. */
-  saysOnlyWhether(query) {
-    return this.queries.any[query] === 1 && this.status(query) === "hit";
-  }
-  /** When it touches something; NaN if it is not known. */
-  time(query) {
-    const t = this.answers.t[query];
-    return Number.isFinite(t) && !this.saysOnlyWhether(query) && this.status(query) !== "undecided" ? t : NaN;
-  }
-  /** The latest of these times. */
-  get latest() {
-    this.latestTime ??= this.answers.t.reduce((latest, _, query) => Math.max(latest, this.time(query) || 0), 0);
-    return this.latestTime;
-  }
-  /** The distance of the surfaces then; NaN if it is not known. */
-  gap(query) {
-    return this.queries.clearance[query] > 0 && !this.saysOnlyWhether(query) ? this.answers.gap?.[query] ?? NaN : 0;
-  }
-  vector(name, query) {
-    return [...this.answers[name].subarray(3 * query, 3 * query + 3)];
-  }
-  /**
-   * The part of its way that a sensor can go, 0 to 1; of a free way, no more than leads out of the scene. 0 where it is
-   * not known.
-   */
-  share(query) {
-    if (this.saysOnlyWhether(query)) return 0;
-    switch (this.status(query)) {
-      case "hit": return this.fractionOf(query, this.answers.t[query]);
-      case "undecided": return this.fractionOf(query, this.answers.lo[query]);
-      case "clear": return Math.min(1, this.reach(this.queries.scene[query]) / (lengthOf(this.way(query)) || 1));
-    }
-    return 0;
-  }
-  /** The same of another mode's answer, if it touches something; else null. */
-  otherShare(query) {
-    const other = this.others[query];
-    return other && other.t !== null ? this.fractionOf(query, other.t) : null;
-  }
-  /** The object touched, by this answer or by another mode's. */
-  touched(query) {
-    const own = this.answers.object[query];
-    return own === this.none && this.others[query] ? this.others[query].object : own;
   }
   /** From a time in the unit of t to a part of the way. */
   fractionOf(query, t) {

@@ -1,15 +1,17 @@
 // Which part of a scene is to be seen at first: what is far from all the rest would make a dot of it.
 
+import { lengthOf, minus } from "./vectors.js";
+
 // How many times as far as the rest reaches.
 const FAR = 30;
 // Numbers of WebGL's end at 3e38.
-const LARGEST = 1e30;
+export const LARGEST = 1e30;
 
 /** A box that grows. */
-class Bounds {
-  constructor() {
-    Object.assign(this, { lo: [Infinity, Infinity, Infinity], hi: [-Infinity, -Infinity, -Infinity] });
-  }
+export class Bounds {
+  lo = [Infinity, Infinity, Infinity];
+  hi = [-Infinity, -Infinity, -Infinity];
+
   add(place, radius) {
     for (let k = 0; k < 3; ++k) {
       this.lo[k] = Math.min(this.lo[k], place[k] - radius);
@@ -24,13 +26,24 @@ class Bounds {
   }
 }
 
-/** The median of each coordinate. */
+/**
+ * A ball around something.
+ * @typedef {{place: number[], radius: number, isSensor: boolean}} Thing
+ */
+
+/**
+ * The median of each coordinate.
+ * @param {Thing[]} things
+ */
 function middleOf(things) {
   return [0, 1, 2].map((k) => Float64Array.from(things, ({ place }) => place[k]).sort()[things.length >> 1]);
 }
 
-/** Of things, {place, radius, isSensor}: those that are near together, at least half of them; and the far ones. */
-function nearTogether(things) {
+/**
+ * Those that are near together, at least half of them; and the far ones.
+ * @param {Thing[]} things
+ */
+export function nearTogether(things) {
   const fits = ({ place, radius }) => Math.max(...place.map(Math.abs), radius) < LARGEST;
   const usable = things.filter(fits), sensors = usable.filter(({ isSensor }) => isSensor);
   const near = [], far = things.filter((thing) => !fits(thing));

@@ -1,15 +1,34 @@
 // A way of looking at the answers, and what it puts on the stage.
 
+import { COLOURS, MARKS, hashed, viridis } from "./colours.js";
+import { frameOf } from "./scopes.js";
+import { between, cross, lengthOf, minus, plus, times, unit } from "./vectors.js";
+import { inDigits } from "./words.js";
+
 /** A way of looking at the answers: which queries, how far along their ways, and what is chosen. */
-class Look {
+export class Look {
+  /** @param {import("./data.js").Data} data */
   constructor(data) {
-    const scene = data.queries.count ? data.queries.scene[0] : 0;
-    Object.assign(this, { data, scene, chosen: -1, object: -1, visible: [], time: 1, alone: false, by: "status" });
+    this.data = data;
+    this.scene = data.queries.count ? data.queries.scene[0] : 0;
+    /** A query; -1: none. */
+    this.chosen = -1;
+    /** Where it is in the scene; -1: none. */
+    this.object = -1;
+    /** @type {number[]} queries that the table shows */
+    this.visible = [];
+    this.time = 1;
+    this.alone = false;
+    this.by = "status";
   }
 
+  /** The answer to the chosen query; undefined if none is chosen. */
+  get answer() {
+    return this.data.answers[this.chosen];
+  }
   /** The part of its way that a query's sensor has gone. */
   gone(query) {
-    const share = this.data.share(query);
+    const { share } = this.data.answers[query];
     return this.alone && query === this.chosen ? this.time * share : Math.min(this.time, share);
   }
   /** The part of the step that has passed, for objects. */
@@ -18,24 +37,20 @@ class Look {
   }
 
   colourOf(query) {
-    const { data, by } = this, { object } = data.answers;
-    if (by === "t") {
-      const time = data.time(query);
-      return Number.isNaN(time) ? COLOURS.invalid : viridis(time / (data.latest || 1));
-    }
+    const { data, by } = this, { time, object, kind } = data.answers[query];
+    if (by === "t") return Number.isNaN(time) ? COLOURS.invalid : viridis(time / (data.latest || 1));
     if (by === "object") {
-      const own = data.ownObject(query), number = own === undefined ? object[query] : data.scene(this.scene).objects.number[own];
+      const own = data.ownObject(query), number = own === undefined ? object : data.scene(this.scene).numbers[own];
       return number === data.none ? COLOURS.invalid : hashed(number);
     }
-    return COLOURS[data.kind(query)];
+    return COLOURS[kind];
   }
 
   /** The place that nothing is to hide: of the chosen sensor's contact, or where it stops. */
   seen() {
-    const { data, chosen } = this;
-    if (chosen < 0) return null;
-    const point = data.vector("point", chosen);
-    return point.every(Number.isFinite) ? point : plus(data.sensors.centreOf(chosen), times(data.share(chosen), data.way(chosen)));
+    const { data, answer, chosen } = this;
+    if (!answer) return null;
+    return answer.hasPoint ? answer.point : plus(data.sensors.centreOf(chosen), times(answer.share, data.way(chosen)));
   }
 
   /** Puts everything on a stage. */
@@ -51,12 +66,12 @@ class Look {
 
   /** `moving`: those that are drawn as sensors. */
   fillObjects(stage, seen, moving) {
-    const { data, chosen } = this, { objects, ways } = data.scene(this.scene), passed = this.passed(), rest = [0, 0, 0];
-    const touched = chosen >= 0 ? objects.place.get(data.touched(chosen)) : undefined;
+    const { data, chosen } = this, { objects, numbers, place: places, ways } = data.scene(this.scene);
+    const passed = this.passed(), rest = [0, 0, 0], touched = places.get(this.answer?.touched);
     const ignored = new Set(data.queries.ignored[chosen]), left = new Set(data.left[chosen]);
     for (let i = 0; i < objects.count; ++i) {
       if (moving.has(i)) continue;
-      const number = objects.number[i], isLeft = left.has(number), isMarked = i === touched || i === this.object || isLeft;
+      const number = numbers[i], isLeft = left.has(number), isMarked = i === touched || i === this.object || isLeft;
       let colour = this.by === "object" ? hashed(number) : COLOURS.object;
       if (isMarked) colour = isLeft ? COLOURS.part : COLOURS.touched;
       const moved = ways.has(i) ? times(passed, ways.get(i)) : rest;
@@ -72,20 +87,19 @@ class Look {
 
   fillSensor(stage, query, seen, crowd) {
     const { data, chosen } = this, { sensors } = data, way = data.way(query), isChosen = query === chosen;
-    const colour = this.colourOf(query), isPale = chosen >= 0 && !isChosen, status = data.status(query), kind = data.kind(query);
-    if (isChosen) this.explain(stage, data.scene(this.scene));
-    if (status !== "invalid") {
-      const moved = times(this.gone(query), way);
-      const isSeen = isChosen && !data.vector("point", query).every(Number.isFinite);
+    const { kind, hasPoint, saysOnlyWhether, share } = data.answers[query];
+    const colour = this.colourOf(query), isPale = chosen >= 0 && !isChosen;
+    if (isChosen) this.explain(stage, this.answer);
+    if (kind !== "invalid") {
+      const moved = times(this.gone(query), way), isSeen = isChosen && !hasPoint;
       if (seen && !isSeen && stage.hides(sensors, query, moved, seen)) stage.glass(sensors, query, moved, colour, isChosen);
       else stage.add(sensors, query, moved, isPale ? between(colour, [0.9, 0.9, 0.92], 0.4) : colour, this.numberOf(query));
     }
     if (crowd < Math.sqrt(150 / 2000) && !isChosen) return;
-    const start = sensors.centreOf(query), share = data.saysOnlyWhether(query) ? 1 : data.share(query);
-    const end = plus(start, times(share, way)), dash = { clear: 6, part: 6, undecided: 2 }[kind] ?? (data.saysOnlyWhether(query) ? 3 : 0);
+    const start = sensors.centreOf(query), end = plus(start, times(saysOnlyWhether ? 1 : share, way));
+    const dash = { clear: 6, part: 6, undecided: 2 }[kind] ?? (saysOnlyWhether ? 3 : 0);
     stage.line(start, end, isChosen ? colour : [...colour, isPale ? 0.5 * crowd : crowd], isChosen ? 3 : 1.5, dash);
-    const place = data.saysOnlyWhether(query) ? start : end;
-    stage.mark(place, colour, isChosen ? 11 : Math.max(3, 7 * crowd), MARKS[kind]);
+    stage.mark(saysOnlyWhether ? start : end, colour, isChosen ? 11 : Math.max(3, 7 * crowd), MARKS[kind]);
   }
   /** For picking. */
   numberOf(query) {
@@ -93,21 +107,20 @@ class Look {
   }
 
   /** The chosen query: where its sensor starts, its bracket, what it touches. */
-  explain(stage, { objects, ways }) {
-    const { data, chosen } = this, { sensors, answers } = data, way = data.way(chosen);
-    const colour = COLOURS[data.kind(chosen)], start = sensors.centreOf(chosen), whether = data.saysOnlyWhether(chosen);
-    if (data.share(chosen) > 0) stage.glass(sensors, chosen, [0, 0, 0], colour, true);
-    const at = (share) => plus(start, times(share, way)), share = data.share(chosen);
+  explain(stage, /** @type {import("./data.js").Answer} */ answer) {
+    const { data, chosen } = this, { sensors } = data, way = data.way(chosen);
+    const { share, saysOnlyWhether: whether, otherShare: other } = answer, start = sensors.centreOf(chosen);
+    if (share > 0) stage.glass(sensors, chosen, [0, 0, 0], COLOURS[answer.kind], true);
+    const at = (part) => plus(start, times(part, way));
     const beyond = Math.min(1, Math.max(share, data.reach(this.scene) / (lengthOf(way) || 1)));
     if (!whether) stage.line(at(share), at(beyond), [...COLOURS.path, 0.5], 1.5, 4);
     const across = times(0.25 * sensors.radius[chosen], unit(cross(way, stage.forward)));
-    for (const t of whether ? [] : [answers.lo[chosen], answers.hi[chosen]]) {
+    for (const t of whether ? [] : [answer.lo, answer.hi]) {
       if (!Number.isFinite(t)) continue;
       const tick = at(data.fractionOf(chosen, t));
       stage.line(minus(tick, across), plus(tick, across), COLOURS.path, 2);
     }
-    this.explainContact(stage, objects, ways, share);
-    const other = data.otherShare(chosen);
+    this.explainContact(stage, answer);
     if (other !== null && Math.abs(other - share) > 1e-3) {
       const moved = times(other, way);
       stage.glass(sensors, chosen, moved, COLOURS.path, false);
@@ -119,26 +132,25 @@ class Look {
     }
   }
 
-  explainContact(stage, objects, ways, share) {
-    const { data, chosen } = this, { sensors, answers } = data, way = data.way(chosen);
-    const object = objects.place.get(answers.object[chosen]);
+  explainContact(stage, /** @type {import("./data.js").Answer} */ { object: number, triA, triB, share, point, hasPoint, normal, hasNormal, gap }) {
+    const { data, chosen } = this, { sensors } = data, { objects, place: places, ways } = data.scene(this.scene);
+    const object = places.get(number);
     if (object === undefined) return;
     const place = (placed, i, triangle, moved) =>
       placed.meshOf(i).corners(triangle).map((corner) => plus(placed.toWorld(i, corner), moved));
     const moved = ways.has(object) ? times(share, ways.get(object)) : [0, 0, 0];
     // A mesh of which the page has only the box has other triangles.
     const has = (placed, i, triangle) => triangle !== data.none && !placed.meshOf(i).isBox;
-    const triangles = [], [a, b] = [answers.triA[chosen], answers.triB[chosen]];
-    if (has(sensors, chosen, a)) triangles.push(place(sensors, chosen, a, times(share, way)));
-    if (has(objects, object, b)) triangles.push(place(objects, object, b, moved));
+    const triangles = [];
+    if (has(sensors, chosen, triA)) triangles.push(place(sensors, chosen, triA, times(share, data.way(chosen))));
+    if (has(objects, object, triB)) triangles.push(place(objects, object, triB, moved));
     for (const corners of triangles) {
       stage.triangle(corners, COLOURS.triangle);
       for (let k = 0; k < 3; ++k) stage.line(corners[k], corners[(k + 1) % 3], COLOURS.path, 2);
     }
-    const point = data.vector("point", chosen), normal = data.vector("normal", chosen), gap = data.gap(chosen);
-    if (!point.every(Number.isFinite)) return;
+    if (!hasPoint) return;
     stage.mark(point, [0, 0, 0], 9, "disc");
-    if (!normal.every(Number.isFinite)) return;
+    if (!hasNormal) return;
     if (gap > 0) {
       const end = plus(point, times(gap, normal));
       stage.line(point, end, COLOURS.gap, 4);

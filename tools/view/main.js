@@ -1,17 +1,40 @@
 // The page: the scene and the table beside it, and what keys, mouse and buttons do to them.
 
+import { SYMBOLS } from "./colours.js";
+import { Data } from "./data.js";
+import { made, the } from "./elements.js";
+import { Bounds, LARGEST } from "./extent.js";
+import { Hands } from "./hands.js";
+import { Look } from "./look.js";
+import { Overlay } from "./overlay.js";
+import { Renderer } from "./renderer.js";
+import { drawScopes } from "./scopes.js";
+import { BOX, Stage, TRIANGLE } from "./stage.js";
+import { Table } from "./table.js";
+import { Camera, between, plus, times } from "./vectors.js";
+import { inWords, kindInWords, sizeInWords } from "./words.js";
+
 class Page {
+  /** @param {string} text */
   constructor(text) {
-    const data = new Data(text), canvas = document.querySelector("#scene");
+    const data = new Data(text), canvas = the("canvas", "scene");
     this.data = data;
+    this.canvas = canvas;
     this.camera = new Camera();
+    this.hands = new Hands(this.camera, canvas);
     this.renderer = new Renderer(canvas);
-    this.stage = new Stage(data, this.camera, canvas);
+    this.stage = new Stage(this.camera, canvas);
     this.look = new Look(data);
-    Object.assign(this, { canvas, budget: 300000, playing: false, frames: [], flight: null });
+    /** Triangles of a picture. */
+    this.budget = 300000;
+    this.playing = false;
+    this.flight = null;
+    /** Whether there is something new to be seen, was so in the last picture, and since when there is not. */
+    this.stale = this.wasStale = true;
+    this.restless = this.last = performance.now();
     document.querySelector("h1").textContent = document.title = data.title;
     this.overlay = new Overlay(data, canvas, () => this.whole(true, true));
-    this.table = new Table(data, document.querySelector("#table"), {
+    this.table = new Table(data, the("div", "table"), {
       choose: (query) => this.choose(query, { fly: true }),
       show: (visible) => this.change({ visible }),
     });
@@ -25,9 +48,8 @@ class Page {
 
   /** The first hit, or else what comes first; undefined if there is no query. */
   firstToSee() {
-    const queries = Array.from({ length: this.data.queries.count }, (_, query) => query);
-    const isOf = (...kinds) => queries.find((query) => kinds.includes(this.data.kind(query)));
-    return isOf("hit") ?? isOf("overlap", "part") ?? queries[0];
+    const { answers } = this.data, isOf = (...kinds) => answers.find(({ kind }) => kinds.includes(kind));
+    return (isOf("hit") ?? isOf("overlap", "part") ?? answers[0])?.query;
   }
 
   /** Something to be seen has changed. */
@@ -48,13 +70,13 @@ class Page {
 
   seek(time) {
     this.change({ time });
-    document.querySelector("#time").value = time;
+    the("input", "time").value = `${time}`;
   }
 
   play(playing = !this.playing) {
     if (playing && this.look.time >= 1) this.seek(0);
     this.playing = playing;
-    document.querySelector("#play").textContent = playing ? "❚❚" : "▶";
+    the("button", "play").textContent = playing ? "❚❚" : "▶";
     this.change();
   }
 
@@ -79,21 +101,21 @@ class Page {
     for (let i = 0; i < objects.count; ++i) add(objects.centreOf(i), objects.radius[i]);
     for (let i = 0; i < data.queries.count; ++i) {
       if (data.queries.scene[i] !== look.scene) continue;
-      const start = data.sensors.centreOf(i), end = plus(start, times(data.share(i), data.way(i)));
+      const start = data.sensors.centreOf(i), end = plus(start, times(data.answers[i].share, data.way(i)));
       for (const place of [start, end]) add(place, data.sensors.radius[i]);
     }
     this.lookAt(bounds, smooth);
   }
   flyTo(query) {
     const { data } = this, { sensors } = data, start = sensors.centreOf(query), radius = sensors.radius[query];
-    const bounds = new Bounds(), { objects } = data.scene(data.queries.scene[query]);
-    for (const share of [0, data.share(query), data.otherShare(query) ?? 0]) {
+    const bounds = new Bounds(), { objects, place } = data.scene(data.queries.scene[query]), answer = data.answers[query];
+    for (const share of [0, answer.share, answer.otherShare ?? 0]) {
       bounds.add(plus(start, times(share, data.way(query))), radius);
     }
     // What it meets, or what was left out, if it is not much larger.
     const most = bounds.diagonal;
-    for (const object of [data.touched(query), ...(data.left[query] ?? [])]) {
-      const i = objects.place.get(object);
+    for (const object of [answer.touched, ...(data.left[query] ?? [])]) {
+      const i = place.get(object);
       if (i !== undefined && objects.radius[i] < most) bounds.add(objects.centreOf(i), objects.radius[i]);
     }
     this.lookAt(bounds);
@@ -109,7 +131,7 @@ class Page {
   // Drawing
 
   frame() {
-    const now = performance.now(), passed = now - (this.last ?? now);
+    const now = performance.now(), passed = now - this.last;
     this.last = now;
     const { clientWidth, clientHeight } = this.canvas, scale = devicePixelRatio;
     if (this.canvas.width !== Math.round(clientWidth * scale) || this.canvas.height !== Math.round(clientHeight * scale)) {
@@ -121,8 +143,6 @@ class Page {
     if (this.stale) {
       // What moves gets as many triangles as can be drawn in time.
       if (this.wasStale && passed > 0) {
-        this.frames.push(passed);
-        if (this.frames.length > 60) this.frames.shift();
         this.budget = Math.min(Math.max(this.budget * (passed > 60 ? 0.8 : passed < 30 ? 1.1 : 1), 10000), 4e6);
       }
       this.draw(this.budget);
@@ -134,6 +154,10 @@ class Page {
     requestAnimationFrame(() => this.frame());
   }
   draw(budget) {
+    if (this.renderer.gl.isContextLost()) return;
+    const { scene } = this.look;
+    if (scene !== this.drawnScene) this.renderer.keepOnly([...this.data.scene(scene).meshes, BOX, TRIANGLE]);
+    this.drawnScene = scene;
     this.stage.begin(budget);
     this.look.fill(this.stage);
     this.stage.settle();
@@ -150,7 +174,7 @@ class Page {
     if (this.tour.length > 0) setTimeout(() => this.tour.length > 0 && this.follow(this.tour[0]), 2500);
   }
   /** A part of the tour: {query, play: "alone" or "all"}. */
-  follow({ query, play }) {
+  follow(/** @type {{query?: number, play?: string}} */ { query, play }) {
     if (query !== undefined) this.choose(query, { fly: true });
     if (!play) return;
     if (play === "all") {
@@ -162,17 +186,17 @@ class Page {
     this.play(true);
   }
   setAlone(alone) {
-    document.querySelector("#alone").checked = alone;
+    the("input", "alone").checked = alone;
     this.change({ alone });
   }
 
   // In words
 
   describe() {
-    const { data, look } = this, place = document.querySelector("#chosen"), query = look.chosen;
+    const { data, look } = this, place = the("div", "chosen"), query = look.chosen;
     place.replaceChildren();
     if (look.object >= 0) {
-      const { objects } = data.scene(look.scene), number = objects.number[look.object];
+      const { objects, numbers } = data.scene(look.scene), number = numbers[look.object];
       made(place, "h2", "", `Object ${number}`);
       const name = data.nameOf(look.scene, number);
       if (name) made(place, "p", "", name);
@@ -181,9 +205,9 @@ class Page {
       only.onclick = () => this.table.filter({ object: `${number}` });
     }
     if (query < 0) return;
-    const kind = data.kind(query), head = made(place, "h2", kind, `${SYMBOLS[kind]} ${data.queries.id[query]}`);
+    const { kind } = look.answer, head = made(place, "h2", kind, `${SYMBOLS[kind]} ${data.queries.id[query]}`);
     head.title = kindInWords(kind);
-    for (const line of inWords(data, query)) made(place, "p", "", line);
+    for (const line of inWords(look.answer)) made(place, "p", "", line);
     if (data.scopes[query]) drawScopes(place, data.scopes[query]);
   }
 
@@ -203,46 +227,56 @@ class Page {
       this.describe();
     }
   }
+  /** Hands have moved the camera. */
+  moved() {
+    this.flight = null;
+    this.change();
+  }
 
   listen() {
-    const { canvas, camera } = this, on = (name, act) => document.querySelector(name).addEventListener("input", act);
-    let moved = 0;
+    const { canvas, hands } = this, time = the("input", "time"), alone = the("input", "alone"), by = the("select", "by");
     canvas.onpointerdown = (event) => {
-      moved = 0;
+      hands.press(event);
       canvas.setPointerCapture(event.pointerId);
     };
-    canvas.onpointermove = ({ buttons, shiftKey, movementX: x, movementY: y }) => {
-      if (!buttons) return;
-      moved += Math.abs(x) + Math.abs(y);
-      this.flight = null;
-      if (buttons > 1 || shiftKey) {
-        const [right, up] = camera.axes(), scale = (2 * camera.slope * camera.distance) / canvas.clientHeight;
-        camera.target = plus(camera.target, plus(times(-x * scale, right), times(y * scale, up)));
-      } else {
-        camera.yaw -= 0.006 * x;
-        camera.pitch = Math.min(Math.max(camera.pitch + 0.006 * y, -1.57), 1.57);
-      }
-      this.change();
+    canvas.onpointermove = (event) => hands.move(event) && this.moved();
+    canvas.onpointerup = (event) => hands.release(event) && this.pick(event.offsetX, event.offsetY);
+    canvas.onpointercancel = (event) => hands.release(event);
+    // A click leaves the arrows to the rows, but takes the keys from a field.
+    canvas.onmousedown = (event) => {
+      event.preventDefault();
+      if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
     };
-    canvas.onpointerup = ({ offsetX, offsetY }) => moved < 4 && this.pick(offsetX, offsetY);
     canvas.oncontextmenu = (event) => event.preventDefault();
     canvas.onwheel = (event) => {
       event.preventDefault();
-      this.flight = null;
-      camera.distance *= Math.exp(0.0015 * event.deltaY);
-      this.change();
+      this.camera.zoom(Math.exp(0.0015 * event.deltaY));
+      this.moved();
     };
-    on("#time", ({ target }) => this.seek(Number(target.value)));
-    on("#alone", ({ target }) => this.setAlone(target.checked));
-    on("#by", ({ target }) => this.change({ by: target.value }));
-    document.querySelector("#play").onclick = () => this.play();
-    document.onkeydown = (event) => {
-      if (event.target.matches("input[placeholder]") || event.ctrlKey || event.altKey || event.metaKey) return;
-      const act = this.keys()[event.key];
-      if (!act) return;
+    canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
-      act();
-    };
+      this.overlay.tell("The browser has lost its graphics device; the picture returns with it.");
+    });
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.renderer.create();
+      this.overlay.tell();
+      this.change();
+    });
+    time.oninput = () => this.seek(Number(time.value));
+    alone.oninput = () => this.setAlone(alone.checked);
+    by.oninput = () => this.change({ by: by.value });
+    the("button", "play").onclick = () => this.play();
+    document.onkeydown = (event) => this.key(event);
+  }
+  key(event) {
+    const { target, key } = event, is = (selector) => target.matches(selector);
+    if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey || is("select, input:not([type])")) return;
+    // What has the focus needs its own keys.
+    if ((key === " " && is("button, [type=checkbox]")) || (key.startsWith("Arrow") && is("[type=range]"))) return;
+    if ((is("canvas") || !key.startsWith("Arrow")) && this.hands.key(event)) this.moved();
+    else if (this.keys()[key]) this.keys()[key]();
+    else return;
+    event.preventDefault();
   }
   keys() {
     return {
@@ -258,8 +292,8 @@ class Page {
 }
 
 try {
-  window.view = new Page(document.querySelector("#data").textContent);
+  Object.assign(window, { view: new Page(the("script", "data").textContent) });
 } catch (error) {
-  document.querySelector("#note").textContent = error.message;
+  the("p", "note").textContent = error.message;
   throw error;
 }

@@ -1,12 +1,32 @@
 // What is written over the picture: a legend, a scale, the axes, and labels of places.
 
-class Overlay {
-  /** `show`: shows all, far things, too. */
+import { COLOURS, SYMBOLS, viridis } from "./colours.js";
+import { made, the } from "./elements.js";
+import { inDigits, kindInWords } from "./words.js";
+
+export class Overlay {
+  /**
+   * @param {import("./data.js").Data} data
+   * @param {HTMLCanvasElement} canvas
+   * @param {() => void} show  shows all, far things, too
+   */
   constructor(data, canvas, show) {
-    Object.assign(this, { data, canvas });
-    for (const name of ["note", "far", "legend", "labels", "scale", "axes"]) this[name] = document.querySelector(`#${name}`);
-    this.note.textContent = data.notes.join(" ");
+    this.data = data;
+    this.canvas = canvas;
+    this.note = the("p", "note");
+    this.far = the("button", "far");
+    this.legend = the("ul", "legend");
+    this.labels = the("div", "labels");
+    this.scale = the("span", "scale");
+    this.axes = the("canvas", "axes");
+    this.key = "";
+    this.tell();
     this.far.onclick = show;
+  }
+
+  /** What the page leaves out, and something else. */
+  tell(more = "") {
+    this.note.textContent = [...this.data.notes, more].join(" ");
   }
 
   draw(camera, look, labels) {
@@ -25,11 +45,10 @@ class Overlay {
   }
 
   /** [colour, symbol, words] of what is in sight. */
-  entries({ by, chosen, scene }) {
-    const { data } = this, { scene: scenes } = data.queries, entries = [];
+  entries(/** @type {import("./look.js").Look} */ { by, answer, scene }) {
+    const { data } = this, entries = [];
     if (by === "status") {
-      const kinds = new Set();
-      for (let i = 0; i < scenes.length; ++i) if (scenes[i] === scene) kinds.add(data.kind(i));
+      const kinds = new Set(data.answers.filter(({ query }) => data.queries.scene[query] === scene).map(({ kind }) => kind));
       for (const kind in SYMBOLS) if (kinds.has(kind)) entries.push([COLOURS[kind], SYMBOLS[kind], kindInWords(kind)]);
     } else if (by === "t") {
       for (const share of [0, 0.25, 0.5, 0.75, 1]) entries.push([viridis(share), "■", `t = ${inDigits(share * data.latest, 3)}`]);
@@ -37,15 +56,15 @@ class Overlay {
     } else {
       entries.push([COLOURS.path, "■", "a colour for each object, and what touches it"]);
     }
-    if (chosen < 0) return entries;
-    const gap = data.gap(chosen), has = (name) => data.vector(name, chosen).every(Number.isFinite);
-    if (data.left[chosen]) entries.push([COLOURS.part, "◇", "left out: crosses at the start"]);
-    if (data.answers.object[chosen] !== data.none) entries.push([COLOURS.touched, "■", gap === 0 ? "touched" : "the nearest object"]);
-    if (data.answers.triA[chosen] !== data.none) entries.push([[0.85, 0.7, 0], "▲", gap === 0 ? "triangles that meet" : "the nearest triangles"]);
-    if (has("point")) entries.push([[0, 0, 0], "●", gap === 0 ? "point of contact" : "nearest point"]);
-    if (gap > 0 && has("normal")) entries.push([COLOURS.gap, "━", "the gap"]);
-    else if (gap === 0 && has("normal")) entries.push([COLOURS.normal, "◆", "normal"]);
-    if (data.share(chosen) > 0) entries.push([COLOURS[data.kind(chosen)], "◇", "where it starts (glass)"]);
+    if (!answer) return entries;
+    const { gap } = answer;
+    if (data.left[answer.query]) entries.push([COLOURS.part, "◇", "left out: crosses at the start"]);
+    if (answer.object !== data.none) entries.push([COLOURS.touched, "■", gap === 0 ? "touched" : "the nearest object"]);
+    if (answer.triA !== data.none) entries.push([[0.85, 0.7, 0], "▲", gap === 0 ? "triangles that meet" : "the nearest triangles"]);
+    if (answer.hasPoint) entries.push([[0, 0, 0], "●", gap === 0 ? "point of contact" : "nearest point"]);
+    if (gap > 0 && answer.hasNormal) entries.push([COLOURS.gap, "━", "the gap"]);
+    else if (gap === 0 && answer.hasNormal) entries.push([COLOURS.normal, "◆", "normal"]);
+    if (answer.share > 0) entries.push([COLOURS[answer.kind], "◇", "where it starts (glass)"]);
     return entries;
   }
   drawLegend(look) {

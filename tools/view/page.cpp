@@ -9,6 +9,7 @@
 #include "view/course.h"
 #include "view/cut.h"
 #include "view/page_text.h"
+#include "workloads/query_fields.h"
 #include "workloads/shapes.h"
 
 namespace radar::tools {
@@ -131,25 +132,44 @@ std::vector<uint32_t> ignoredBy(const QuerySpec& query, const SceneSpec& scene) 
   return ignored;
 }
 
+/// The options that a query gives, but lists of objects: {"clearance": 0.5, "hits": "all", "ignore_leaving": true}.
+Json askedJson(const QuerySpec& query) {
+  Json asked = Json::object();
+  for (const QueryField& field : queryFields()) {
+    if (field.kind() == 'o' || !isGiven(query, field)) continue;
+    const double value = valueIn(query, field);
+    Json& json = asked[field.name];
+    if (field.kind() == 'b') {
+      json = value != 0;
+    } else if (field.word && std::isinf(value)) {
+      json = field.word;
+    } else {
+      json = value;
+    }
+  }
+  return asked;
+}
+
 Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   Poses poses;
-  Json ignored = Json::object();
+  Json ignored = Json::object(), asked = Json::object();
   Json ids = Json::array();
   std::vector<uint32_t> scenes;
-  std::vector<double> ways, wholes, clearances;
-  std::vector<uint8_t> steps, any;
+  std::vector<double> ways, wholes;
+  std::vector<uint8_t> steps;
   for (const QuerySpec& query : queries) {
     const Course course(query);
+    const std::string number = std::to_string(scenes.size());
     poses.add(query.mesh, query.worldFromMesh);
     ids.push_back(query.id);
     scenes.push_back(query.scene);
     ways.insert(ways.end(), course.way.begin(), course.way.end());
     wholes.push_back(course.whole);
     steps.push_back(query.motion.has_value());
-    any.push_back(query.anyHit);
-    clearances.push_back(query.clearance);
     const std::vector<uint32_t> left = ignoredBy(query, workload.scenes[query.scene]);
-    if (!left.empty()) ignored[std::to_string(scenes.size() - 1)] = left;
+    if (!left.empty()) ignored[number] = left;
+    Json options = askedJson(query);
+    if (!options.empty()) asked[number] = std::move(options);
   }
   Json json = poses.json();
   json["count"] = queries.size();
@@ -158,8 +178,7 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   json["way"] = array(ways);
   json["whole"] = array(wholes);
   json["step"] = array(steps);
-  json["any"] = array(any);
-  json["clearance"] = array(clearances);
+  json["asked"] = std::move(asked);
   json["ignored"] = std::move(ignored);
   return json;
 }

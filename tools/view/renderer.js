@@ -85,45 +85,61 @@ void main() {
   result = kind == PICK ? vec4((uvec4(number) >> uvec4(0, 8, 16, 24)) & 255u) / 255.0 : tint;
 }`];
 
-const SHAPES = { square: 0, disc: 1, ring: 2, cross: 3, diamond: 4 };
+export const SHAPES = { square: 0, disc: 1, ring: 2, cross: 3, diamond: 4 };
 const KINDS = { solid: 0, ghost: 1, pick: 2 };
-const SURFACE_WORDS = 14, SEGMENT_WORDS = 9, POINT_WORDS = 7;
+export const SURFACE_WORDS = 14, SEGMENT_WORDS = 9, POINT_WORDS = 7;
 
-const packed = ([r, g, b, a = 1]) =>
+export const packed = ([r, g, b, a = 1]) =>
   ((255 * r) | 0) | (((255 * g) | 0) << 8) | (((255 * b) | 0) << 16) | (((255 * a) | 0) << 24);
 
 /** Rows of a number of words each, floats or whole. */
-class Rows {
+export class Rows {
+  /** @param {number} words */
   constructor(words) {
     this.words = words;
-    this.reserve(64);
     this.count = 0;
-  }
-  reserve(rows) {
-    const floats = new Float32Array(rows * this.words);
-    if (this.floats) floats.set(this.floats);
-    this.floats = floats;
-    this.whole = new Uint32Array(floats.buffer);
-    this.capacity = rows;
+    this.floats = new Float32Array(64 * words);
+    this.whole = new Uint32Array(this.floats.buffer);
   }
   /** The first word of a new row. */
   add() {
-    if (this.count === this.capacity) this.reserve(2 * this.capacity);
-    return this.words * this.count++;
+    const first = this.words * this.count++;
+    if (first === this.floats.length) {
+      const { floats } = this;
+      this.floats = new Float32Array(2 * floats.length);
+      this.floats.set(floats);
+      this.whole = new Uint32Array(this.floats.buffer);
+    }
+    return first;
   }
 }
 
 /** Whether a processor draws, which smooth edges would slow down to half. */
 function isSoftware() {
   const gl = document.createElement("canvas").getContext("webgl2");
-  return gl !== null && /swiftshader|llvmpipe|software/i.test(gl.getParameter(gl.RENDERER));
+  const isSoft = gl !== null && /swiftshader|llvmpipe|software/i.test(gl.getParameter(gl.RENDERER));
+  // A browser keeps only some contexts, and this one until its canvas is collected.
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return isSoft;
 }
 
-class Renderer {
+export class Renderer {
+  /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     const gl = canvas.getContext("webgl2", { antialias: !isSoftware(), alpha: false });
     if (!gl) throw new Error("This page needs WebGL 2, which this browser does not offer.");
-    Object.assign(this, { canvas, gl, meshBuffers: new Map() });
+    this.canvas = canvas;
+    this.gl = gl;
+    /** @type {?ReturnType<import("./stage.js").Stage["view"]>} */
+    this.view = null;
+    this.picking = false;
+    this.create();
+  }
+  /** Makes what the context holds, also after it was lost. */
+  create() {
+    const { gl } = this;
+    /** @type {Map<import("./meshes.js").Mesh, {positions: WebGLBuffer, indices: WebGLBuffer}>} */
+    this.meshBuffers = new Map();
     this.surface = this.program(SURFACE_SHADERS);
     this.segment = this.program(SEGMENT_SHADERS);
     this.point = this.program(POINT_SHADERS);
@@ -137,7 +153,7 @@ class Renderer {
     const { gl } = this, program = gl.createProgram();
     shaders.forEach((text, i) => {
       const shader = gl.createShader(i === 0 ? gl.VERTEX_SHADER : gl.FRAGMENT_SHADER);
-      gl.shaderSource(shader, text.replaceAll("GHOST", KINDS.ghost).replaceAll("PICK", KINDS.pick));
+      gl.shaderSource(shader, text.replaceAll("GHOST", `${KINDS.ghost}`).replaceAll("PICK", `${KINDS.pick}`));
       gl.compileShader(shader);
       gl.attachShader(program, shader);
     });
@@ -172,7 +188,8 @@ class Renderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, picking ? this.picture : null);
     if (picking) this.sizePicture(width, height);
     gl.viewport(0, 0, width, height);
-    gl.clearColor(...(picking ? [0, 0, 0, 0] : [0.97, 0.975, 0.98, 1]));
+    if (picking) gl.clearColor(0, 0, 0, 0);
+    else gl.clearColor(0.97, 0.975, 0.98, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
@@ -256,6 +273,17 @@ class Renderer {
       this.meshBuffers.set(mesh, { positions, indices: this.buffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices) });
     }
     return this.meshBuffers.get(mesh);
+  }
+
+  /** Frees what belongs to other meshes. */
+  keepOnly(/** @type {import("./meshes.js").Mesh[]} */ meshes) {
+    const kept = new Set(meshes);
+    for (const [mesh, { positions, indices }] of this.meshBuffers) {
+      if (kept.has(mesh)) continue;
+      this.gl.deleteBuffer(positions);
+      this.gl.deleteBuffer(indices);
+      this.meshBuffers.delete(mesh);
+    }
   }
 
   segments(rows) {

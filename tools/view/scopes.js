@@ -1,7 +1,12 @@
 // The paper's scopes of a query of mode sampled: R, M and L as pictures.
 
+import { viridis } from "./colours.js";
+import { made } from "./elements.js";
+import { plus, times } from "./vectors.js";
+import { inDigits } from "./words.js";
+
 /** The window's outline, as placed at the sensor's back plane, and from there to the end of the target volume. */
-function frameOf({ width, height, pixel, d, origin, right, up, forward }) {
+export function frameOf({ width, height, pixel, d, origin, right, up, forward }) {
   const corner = (x, y, z) =>
     plus(plus(plus(origin, times(x * width * pixel, right)), times(y * height * pixel, up)), times(z * d, forward));
   const ring = [[0, 0], [1, 0], [1, 1], [0, 1]], lines = [];
@@ -42,7 +47,7 @@ function drawScope(place, name, scopes) {
   }
   if (name === "L" && least >= 0) {
     context.lineWidth = 4;
-    for (const [style, radius] of [["#fff", 18], ["#d00", 22]]) {
+    for (const { style, radius } of [{ style: "#fff", radius: 18 }, { style: "#d00", radius: 22 }]) {
       context.strokeStyle = style;
       context.beginPath();
       const x = (least % width) + 0.5, y = height - Math.floor(least / width) - 0.5;
@@ -64,7 +69,7 @@ function drawScope(place, name, scopes) {
   };
 }
 
-function drawScopes(place, scopes) {
+export function drawScopes(place, scopes) {
   made(place, "p", "", `${scopes.width} × ${scopes.height} pixels of ${inDigits(scopes.pixel)}; d = ${inDigits(scopes.d)}, ` +
     `the sensor is ${inDigits(scopes.length)} long`);
   const row = made(place, "div", "scopes");

@@ -1,56 +1,54 @@
 // What is to be drawn for a state of the page: which meshes where, as far as the budget of triangles goes.
 
-const COLOURS = {
-  hit: [0.9, 0.42, 0.05], clear: [0.1, 0.6, 0.47], overlap: [0.85, 0.13, 0.5], undecided: [0.85, 0.65, 0],
-  invalid: [0.35, 0.35, 0.35], object: [0.68, 0.72, 0.78], touched: [0.32, 0.55, 0.86], triangle: [1, 0.9, 0.1],
-  normal: [0.05, 0.2, 0.75], gap: [0.75, 0.1, 0.1], path: [0.15, 0.15, 0.2],
-};
-COLOURS.part = COLOURS.overlap;
-const SYMBOLS = { hit: "●", clear: "○", part: "○", overlap: "✕", undecided: "◆", invalid: "–" };
-const MARKS = { hit: "disc", clear: "ring", part: "ring", overlap: "cross", undecided: "diamond", invalid: "square" };
+import { LARGEST } from "./extent.js";
+import { Mesh } from "./meshes.js";
+import { POINT_WORDS, Rows, SEGMENT_WORDS, SHAPES, SURFACE_WORDS, packed } from "./renderer.js";
+import { minus, plus, times } from "./vectors.js";
 
-// The viridis map (S. van der Walt and N. Smith, 2015), as a polynomial (M. Zucker).
-const VIRIDIS = [
-  [0.2777, 0.0054, 0.3341], [0.1051, 1.4046, 1.3846], [-0.3309, 0.2148, 0.0951], [-4.6342, -5.7991, -19.3324],
-  [6.2283, 14.1799, 56.6906], [4.7764, -13.7451, -65.353], [-5.4355, 4.6459, 26.3124],
-];
-function viridis(share) {
-  const x = Math.min(Math.max(share, 0), 1);
-  const colour = VIRIDIS.reduceRight((sum, factors) => plus(times(x, sum), factors), [0, 0, 0]);
-  return colour.map((value) => Math.min(Math.max(value, 0), 1));
-}
-
-/** A colour of its own for each number. */
-function hashed(number) {
-  const hue = (number * 0.618034) % 1;
-  return [0, 1 / 3, 2 / 3].map((shift) => 0.45 + 0.4 * Math.cos(2 * Math.PI * (hue + shift)));
-}
-
-const BOX = new Mesh({
+export const BOX = new Mesh({
   name: "box",
   positions: new Float32Array([0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)))),
   indices: new Uint32Array([
     0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
   ]),
 });
-const TRIANGLE = new Mesh({
+export const TRIANGLE = new Mesh({
   name: "triangle", positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]),
 });
 
 // Bins of apparent size in pixels, each 1.25 times the last.
 const BINS = 64, binOf = (pixels) => Math.min(BINS - 1, Math.max(0, Math.floor(Math.log(pixels) / Math.log(1.25)) + 8));
 
-class Stage {
-  constructor(data, camera, canvas) {
-    Object.assign(this, { data, camera, canvas });
+export class Stage {
+  /**
+   * @param {import("./vectors.js").Camera} camera
+   * @param {HTMLCanvasElement} canvas
+   */
+  constructor(camera, canvas) {
+    this.camera = camera;
+    this.canvas = canvas;
+    this.begin(0);
   }
 
   /** Collects for a camera; `budget`: triangles. Numbers: 1 + index of an object, then of queries. */
   begin(budget) {
-    const { camera, canvas } = this;
-    Object.assign(this, { budget, items: [], solids: new Map(), ghosts: new Map(), farthest: 0 });
-    Object.assign(this, { labels: [], lines: new Rows(SEGMENT_WORDS), marks: new Rows(POINT_WORDS), specks: new Rows(POINT_WORDS) });
-    [this.right, this.up, this.forward] = camera.axes();
+    const { camera, canvas } = this, [right, up, forward] = camera.axes();
+    this.budget = budget;
+    this.items = [];
+    this.simplified = false;
+    /** @type {Map<Mesh, Rows>} */
+    this.solids = new Map();
+    /** @type {Map<Mesh, Rows>} */
+    this.ghosts = new Map();
+    /** @type {{place: number[], text: string}[]} */
+    this.labels = [];
+    this.lines = new Rows(SEGMENT_WORDS);
+    this.marks = new Rows(POINT_WORDS);
+    this.specks = new Rows(POINT_WORDS);
+    this.farthest = 0;
+    this.right = right;
+    this.up = up;
+    this.forward = forward;
     this.eye = camera.eye();
     this.focal = canvas.height / (2 * camera.slope);
     this.aspect = canvas.width / canvas.height;

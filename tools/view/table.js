@@ -1,94 +1,163 @@
 // The list of queries: sorted, filtered, and drawn only where it is scrolled to.
 
-const ROW_HEIGHT = 24;
-/** Of its bracket; NaN if it says nothing. */
-const widthOf = (data, i) => (data.saysOnlyWhether(i) ? NaN : data.answers.hi[i] - data.answers.lo[i]);
-const COLUMNS = [
-  { name: "status", value: (data, i) => data.answers.status[i] },
-  { name: "query", value: (data, i) => data.queries.id[i] },
-  { name: "t", value: (data, i) => (data.saysOnlyWhether(i) ? data.answers.hi : data.answers.t)[i] },
-  { name: "hi − lo", value: (data, i) => widthOf(data, i) },
-  { name: "object", value: (data, i) => data.answers.object[i] },
+import { SYMBOLS } from "./colours.js";
+import { made } from "./elements.js";
+import { askedInWords, inDigits, kindInWords } from "./words.js";
+
+/**
+ * @typedef {import("./data.js").Answer} Answer
+ * @typedef {{name: string, value: (answer: Answer) => number | string, text: (answer: Answer) => string}} Column
+ */
+
+/** @type {Column[]} `value` sorts. */
+export const COLUMNS = [
+  {
+    name: "status", value: ({ data, status }) => data.statuses.indexOf(status),
+    text: ({ data, query, kind }) => `${SYMBOLS[kind]} ${kind === "part" ? `clear, ${data.left[query].length} left out` : kind}`,
+  },
+  { name: "query", value: ({ data, query }) => data.queries.id[query], text: ({ data, query }) => data.queries.id[query] },
+  {
+    name: "t", value: ({ saysOnlyWhether, t, hi }) => (saysOnlyWhether ? hi : t),
+    text: ({ saysOnlyWhether, t, hi }) => (saysOnlyWhether ? `≤ ${inDigits(hi)}` : inDigits(t)),
+  },
+  { name: "hi − lo", value: ({ width }) => width, text: ({ width }) => inDigits(width, 2) },
+  {
+    name: "object", value: ({ object }) => object,
+    text: ({ data, query, object }) => {
+      const name = object === data.none ? "" : data.nameOf(data.queries.scene[query], object);
+      return object === data.none ? "" : name ? `${object} (${name})` : `${object}`;
+    },
+  },
+  { name: "asked", value: askedInWords, text: askedInWords },
 ];
 
-function made(parent, tag, className = "", text = "") {
-  const element = document.createElement(tag);
-  element.className = className;
-  element.textContent = text;
-  parent.append(element);
-  return element;
+/** The queries that filters leave, in the order of a column. */
+export class Listing {
+  /** @param {import("./data.js").Data} data */
+  constructor(data) {
+    this.answers = [...data.answers];
+    /** Kinds of answers; empty: all. */
+    this.kinds = new Set();
+    /** A part of ids, and a number of an object; empty: any. */
+    this.id = "";
+    this.object = "";
+    /** @type {?Column} */
+    this.column = null;
+    this.descending = false;
+    /** @type {number[]} queries */
+    this.rows = [];
+    this.filter();
+  }
+
+  /** What is not given stays as it is. */
+  filter({ kinds = this.kinds, id = this.id, object = this.object } = {}) {
+    Object.assign(this, { kinds, id, object });
+    const part = id.toLowerCase(), number = object.trim();
+    this.rows = this.answers.filter((answer) =>
+      (kinds.size === 0 || kinds.has(answer.kind)) &&
+      (part === "" || answer.data.queries.id[answer.query].toLowerCase().includes(part)) &&
+      (number === "" || `${answer.object}` === number)).map(({ query }) => query);
+  }
+
+  /** By a column; again: the other way round. */
+  sort(/** @type {Column} */ column) {
+    this.descending = this.column === column && !this.descending;
+    this.column = column;
+    const sign = this.descending ? -1 : 1, values = new Map(this.answers.map((answer) => [answer, column.value(answer)]));
+    const compare = (a, b) => (a < b ? -1 : a > b ? 1 : Number(Number.isNaN(a)) - Number(Number.isNaN(b)));
+    this.answers.sort((a, b) => sign * compare(values.get(a), values.get(b)) || a.query - b.query);
+    this.filter();
+  }
+
+  /** The query that stands so many rows below; the first if that query has no row; undefined if there are none. */
+  beside(query, steps) {
+    const row = this.rows.indexOf(query);
+    return this.rows[Math.min(Math.max(row < 0 ? 0 : row + steps, 0), this.rows.length - 1)];
+  }
 }
 
-class Table {
-  /** Calls `choose` with a query's number; `show` with the numbers that the filters leave. */
+const ROW_HEIGHT = 24;
+
+export class Table {
+  /**
+   * `choose`: called with a query; `show`: with those that the filters leave.
+   * @param {import("./data.js").Data} data
+   * @param {HTMLElement} place
+   * @param {{choose: (query: number) => void, show: (queries: number[]) => void}} calls
+   */
   constructor(data, place, { choose, show }) {
-    Object.assign(this, { data, choose, show, column: null, descending: false, statuses: new Set(), rows: [] });
-    this.order = Uint32Array.from({ length: data.queries.count }, (_, i) => i);
-    this.makeFilters(made(place, "div", "filters"));
+    this.data = data;
+    this.listing = new Listing(data);
+    this.choose = choose;
+    this.show = show;
+    this.chosen = -1;
+    this.columns = Object.keys(data.queries.asked).length ? COLUMNS : COLUMNS.filter(({ value }) => value !== askedInWords);
+    place.classList.toggle("asks", this.columns === COLUMNS);
+    const filters = made(place, "div", "filters");
+    this.makeChips(filters);
+    this.id = this.field(filters, "id", "part of an id", "7.5em");
+    this.object = this.field(filters, "object", "object", "4.5em");
     this.scroller = made(place, "div", "scroller");
     this.scroller.tabIndex = 0;
-    // Within what scrolls, so that a scrollbar moves them as it moves the columns.
-    const heads = made(this.scroller, "div", "row heads");
-    for (const column of COLUMNS) {
-      const head = made(heads, "button", "", column.name);
-      head.title = `Sort by ${column.name}`;
-      head.onclick = () => this.sort(column);
-    }
+    for (const [name, value] of [["role", "grid"], ["aria-label", "Queries and their answers"]]) this.scroller.setAttribute(name, value);
+    this.heads = this.makeHeads();
     this.room = made(this.scroller, "div", "room");
+    this.room.setAttribute("role", "rowgroup");
     this.scroller.onscroll = () => this.draw();
+    this.scroller.onkeydown = (event) => this.page(event);
     new ResizeObserver(() => this.draw()).observe(this.scroller);
     this.filter();
   }
 
-  makeFilters(place) {
-    const { data } = this, counts = new Map();
-    for (let i = 0; i < data.queries.count; ++i) counts.set(data.kind(i), (counts.get(data.kind(i)) ?? 0) + 1);
-    for (const [status, count] of counts) {
-      const button = made(place, "button", `chip ${status}`, `${SYMBOLS[status]} ${kindInWords(status)} ${count}`);
+  makeChips(place) {
+    const { listing } = this, counts = new Map();
+    for (const { kind } of this.data.answers) counts.set(kind, (counts.get(kind) ?? 0) + 1);
+    for (const [kind, count] of counts) {
+      const button = made(place, "button", `chip ${kind}`, `${SYMBOLS[kind]} ${kindInWords(kind)} ${count}`);
+      button.ariaPressed = "false";
       button.onclick = () => {
-        if (!this.statuses.delete(status)) this.statuses.add(status);
-        button.classList.toggle("on", this.statuses.has(status));
+        if (!listing.kinds.delete(kind)) listing.kinds.add(kind);
+        button.ariaPressed = `${listing.kinds.has(kind)}`;
         this.filter();
       };
     }
-    const field = (hint, width) => {
-      const input = made(place, "input");
-      Object.assign(input, { placeholder: hint, oninput: () => this.filter() });
-      input.style.width = width;
-      return input;
-    };
-    this.id = field("part of an id", "7.5em");
-    this.object = field("object", "4.5em");
+  }
+  field(place, name, hint, width) {
+    const input = made(place, "input");
+    Object.assign(input, { placeholder: hint, ariaLabel: `Filter by ${hint}`, oninput: () => this.filter({ [name]: input.value }) });
+    input.style.width = width;
+    return input;
+  }
+  makeHeads() {
+    // Within what scrolls, so that a scrollbar moves them as it moves the columns.
+    const row = made(this.scroller, "div", "row heads");
+    row.setAttribute("role", "row");
+    row.ariaRowIndex = "1";
+    return this.columns.map((column) => {
+      const cell = made(row, "span"), head = made(cell, "button", "", column.name);
+      cell.setAttribute("role", "columnheader");
+      head.title = `Sort by ${column.name}`;
+      head.onclick = () => {
+        this.listing.sort(column);
+        this.filter();
+      };
+      return cell;
+    });
   }
 
-  /** Applies the filters, or those that are given: {statuses, id, object}. */
+  /** Applies filters, as Listing.filter does, and shows them. */
   filter(given = {}) {
-    const { data } = this, { object } = data.answers;
-    if (given.statuses) this.statuses = new Set(given.statuses);
-    if (given.id !== undefined) this.id.value = given.id;
-    if (given.object !== undefined) this.object.value = given.object;
-    const id = this.id.value.toLowerCase(), number = this.object.value.trim();
-    this.rows = this.order.filter((i) =>
-      (this.statuses.size === 0 || this.statuses.has(data.kind(i))) &&
-      (id === "" || data.queries.id[i].toLowerCase().includes(id)) &&
-      (number === "" || `${object[i]}` === number));
-    this.show([...this.rows]);
+    const { listing } = this;
+    listing.filter(given);
+    for (const name of ["id", "object"]) if (this[name].value !== listing[name]) this[name].value = listing[name];
+    this.show([...listing.rows]);
     this.draw();
-  }
-
-  sort(column) {
-    this.descending = this.column === column && !this.descending;
-    this.column = column;
-    const sign = this.descending ? -1 : 1, values = Array.from(this.order, (_, i) => column.value(this.data, i));
-    const compare = (a, b) => (a < b ? -1 : a > b ? 1 : Number.isNaN(a) - Number.isNaN(b));
-    this.order.sort((i, j) => sign * compare(values[i], values[j]) || i - j);
-    this.filter();
   }
 
   /** Marks a query and scrolls to it. */
   mark(query) {
     this.chosen = query;
-    const row = this.rows.indexOf(query), top = row * ROW_HEIGHT, { scrollTop, clientHeight } = this.scroller;
+    const row = this.listing.rows.indexOf(query), top = row * ROW_HEIGHT, { scrollTop, clientHeight } = this.scroller;
     if (row >= 0 && (top < scrollTop || top + 2 * ROW_HEIGHT > scrollTop + clientHeight)) {
       this.scroller.scrollTop = top - 0.4 * clientHeight;
     }
@@ -97,26 +166,42 @@ class Table {
 
   /** The query `steps` rows below the marked one. */
   beside(steps) {
-    const row = this.rows.indexOf(this.chosen);
-    return this.rows[Math.min(Math.max(row < 0 ? 0 : row + steps, 0), this.rows.length - 1)];
+    return this.listing.beside(this.chosen, steps);
+  }
+  /** Keys that would scroll choose a row. */
+  page(event) {
+    const rows = Math.max(1, Math.floor(this.scroller.clientHeight / ROW_HEIGHT) - 2);
+    const steps = { PageDown: rows, PageUp: -rows, Home: -Infinity, End: Infinity }[event.key];
+    if (steps === undefined) return;
+    event.preventDefault();
+    this.choose(this.beside(steps));
   }
 
   draw() {
-    const { data, room, scroller } = this, { answers, queries } = data;
-    room.style.height = `${this.rows.length * ROW_HEIGHT}px`;
+    const { data, room, scroller, listing: { rows, column, descending } } = this;
+    scroller.ariaRowCount = `${rows.length + 1}`;
+    this.columns.forEach((one, i) => (this.heads[i].ariaSort = one !== column ? "none" : descending ? "descending" : "ascending"));
+    room.style.height = `${rows.length * ROW_HEIGHT}px`;
     room.replaceChildren();
     const first = Math.max(0, Math.floor(scroller.scrollTop / ROW_HEIGHT) - 4);
-    const end = Math.min(this.rows.length, first + Math.ceil(scroller.clientHeight / ROW_HEIGHT) + 8);
-    for (let place = first; place < end; ++place) {
-      const i = this.rows[place], kind = data.kind(i), object = answers.object[i];
-      const row = made(room, "div", `row ${i === this.chosen ? "chosen" : ""}`);
-      row.style.top = `${place * ROW_HEIGHT}px`;
-      row.onclick = () => this.choose(i);
-      const name = object === data.none ? "" : data.nameOf(queries.scene[i], object);
-      const texts = [`${SYMBOLS[kind]} ${kind === "part" ? `clear, ${data.left[i].length} left out` : kind}`, queries.id[i],
-        data.saysOnlyWhether(i) ? `≤ ${inDigits(answers.hi[i])}` : inDigits(answers.t[i]), inDigits(widthOf(data, i), 2),
-        object === data.none ? "" : name ? `${object} (${name})` : `${object}`];
-      texts.forEach((text, k) => (made(row, "span", k === 0 ? kind : k > 1 ? "number" : "", text).title = text));
-    }
+    const end = Math.min(rows.length, first + Math.ceil(scroller.clientHeight / ROW_HEIGHT) + 8);
+    for (let place = first; place < end; ++place) this.drawRow(data.answers[rows[place]], place);
+    const chosen = rows.indexOf(this.chosen);
+    if (chosen >= first && chosen < end) scroller.setAttribute("aria-activedescendant", `row${this.chosen}`);
+    else scroller.removeAttribute("aria-activedescendant");
+  }
+  drawRow(/** @type {Answer} */ answer, /** @type {number} */ place) {
+    const { query, kind } = answer, row = made(this.room, "div", `row ${query === this.chosen ? "chosen" : ""}`);
+    row.id = `row${query}`;
+    row.setAttribute("role", "row");
+    row.ariaRowIndex = `${place + 2}`;
+    row.ariaSelected = `${query === this.chosen}`;
+    row.style.top = `${place * ROW_HEIGHT}px`;
+    row.onclick = () => this.choose(query);
+    this.columns.forEach((column, k) => {
+      const text = column.text(answer), cell = made(row, "span", k === 0 ? kind : k > 1 ? "number" : "", text);
+      cell.setAttribute("role", "gridcell");
+      cell.title = text;
+    });
   }
 }

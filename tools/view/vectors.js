@@ -1,23 +1,41 @@
 // Points and vectors are arrays of three numbers.
 
-const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const times = (s, a) => [s * a[0], s * a[1], s * a[2]];
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const lengthOf = (a) => Math.hypot(a[0], a[1], a[2]);
-const unit = (a) => times(1 / (lengthOf(a) || 1), a);
-const between = (a, b, share) => plus(a, times(share, minus(b, a)));
+export const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const times = (s, a) => [s * a[0], s * a[1], s * a[2]];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const lengthOf = (a) => Math.hypot(a[0], a[1], a[2]);
+export const unit = (a) => times(1 / (lengthOf(a) || 1), a);
+export const between = (a, b, share) => plus(a, times(share, minus(b, a)));
 
 /** An orbit around a target, seen in perspective; z is up. */
-class Camera {
-  constructor() {
-    Object.assign(this, { target: [0, 0, 0], distance: 1, yaw: -0.9, pitch: 0.5, slope: Math.tan(Math.PI / 9) });
-  }
+export class Camera {
+  target = [0, 0, 0];
+  distance = 1;
+  yaw = -0.9;
+  pitch = 0.5;
+  /** Half the height of what is seen at a distance of 1. */
+  slope = Math.tan(Math.PI / 9);
+
   /** Right, up and forward. */
   axes() {
     const [c, s, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
     return [[-s, c, 0], [-c * sp, -s * sp, cp], [-c * cp, -s * cp, -sp]];
+  }
+  /** By angles. */
+  turn(yaw, pitch) {
+    this.yaw += yaw;
+    this.pitch = Math.min(Math.max(this.pitch + pitch, -1.57), 1.57);
+  }
+  /** What is seen by pixels to the right and down, on a canvas so high. */
+  move(x, y, height) {
+    const [right, up] = this.axes(), pixel = (2 * this.slope * this.distance) / height;
+    this.target = plus(this.target, plus(times(-x * pixel, right), times(y * pixel, up)));
+  }
+  /** As far from the target as before, times a factor. */
+  zoom(factor) {
+    this.distance *= factor;
   }
   eye() {
     return minus(this.target, times(this.distance, this.axes()[2]));

@@ -1,0 +1,151 @@
+// The page's modules without a browser: node --test. tests/view/page_test.py looks at the page itself.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Data } from "../../tools/view/data.js";
+import { Hands } from "../../tools/view/hands.js";
+import { Look } from "../../tools/view/look.js";
+import { Renderer } from "../../tools/view/renderer.js";
+import { COLUMNS, Listing } from "../../tools/view/table.js";
+import { Camera } from "../../tools/view/vectors.js";
+import { inWords } from "../../tools/view/words.js";
+
+const NONE = 0xffffffff, TYPES = { u1: Uint8Array, u4: Uint32Array, f4: Float32Array, f8: Float64Array };
+const array = (type, values) => ({ [type]: Buffer.from(new TYPES[type](values).buffer).toString("base64") });
+const UNIT = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+
+function poses(places) {
+  return { mesh: array("u4", places.map(() => 0)), linear: array("f4", places.flatMap(() => UNIT)), at: array("f8", places.flat()) };
+}
+function answersOf(rows) {
+  const of = (type, name, none) => array(type, rows.flatMap((row) => row[name] ?? none));
+  const numbers = Object.fromEntries(["t", "lo", "hi", "gap"].map((name) => [name, of("f8", name, NaN)]));
+  const ids = Object.fromEntries(["object", "triA", "triB"].map((name) => [name, of("u4", name, NONE)]));
+  const places = Object.fromEntries(["point", "normal"].map((name) => [name, of("f8", name, [NaN, NaN, NaN])]));
+  return { status: array("u1", rows.map(({ status }) => STATUSES.indexOf(status))), ...numbers, ...ids, ...places };
+}
+const STATUSES = ["hit", "clear", "overlap", "undecided", "invalid"];
+
+/**
+ * What page.cpp writes of a scene of cubes of side 2 at x = 0, 10, 20, and sensors like them, which move 10 along x.
+ * `rows`: of each query its answer, and what was asked: {id, at, asked, left, step}.
+ */
+function dataOf(rows, more = {}) {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)));
+  const by = (name) => Object.fromEntries(rows.flatMap((row, i) => (row[name] ? [[i, row[name]]] : [])));
+  const objects = [0, 10, 20].map((x) => [x, 0, 0]);
+  const scene = {
+    ...poses(objects), id: "", base: null, number: array("u4", [0, 1, 2]), names: { 1: "lid" }, moving: array("u4", []),
+    ways: array("f8", []), deforms: [],
+  };
+  const queries = {
+    ...poses(rows.map(({ at = [-5, 0, 0] }) => at)), count: rows.length, id: rows.map(({ id }, i) => id ?? `${i}`),
+    scene: array("u4", rows.map(() => 0)), way: array("f8", rows.flatMap(() => [10, 0, 0])),
+    whole: array("f8", rows.map(({ step }) => (step ? 1 : 10))), step: array("u1", rows.map(({ step }) => (step ? 1 : 0))),
+    asked: by("asked"), ignored: by("ignored"),
+  };
+  return new Data(JSON.stringify({
+    title: "", notes: [], tour: [], none: NONE, statuses: STATUSES, scenes: [scene], queries, answers: answersOf(rows),
+    meshes: [{ name: "cube", positions: array("f4", corners), indices: array("u4", [0, 1, 3, 4, 5, 7]) }],
+    left: by("left"), reasons: by("reasons"), others: by("others"), scopes: {}, ...more,
+  }));
+}
+const HIT = { status: "hit", t: 3, lo: 3, hi: 3, object: 0, triA: 0, triB: 1, gap: 0, point: [-1, 0, 0], normal: [-1, 0, 0] };
+const CLEAR = { status: "clear", t: Infinity, lo: Infinity, hi: Infinity };
+
+test("an answer says how far its sensor goes, and when it touches something", () => {
+  const data = dataOf([
+    HIT, CLEAR, { ...CLEAR, left: [1] }, { status: "overlap", t: 0, lo: 0, hi: 0, object: 1 },
+    { status: "undecided", t: 4, lo: 4, hi: Infinity }, { status: "invalid" },
+    { status: "hit", t: 10, lo: 0, hi: 10, asked: { decide: true } }, { ...HIT, t: 0.5, lo: 0.5, hi: 0.5, step: true },
+  ]);
+  assert.deepEqual(data.answers.map(({ kind }) => kind),
+    ["hit", "clear", "part", "overlap", "undecided", "invalid", "hit", "hit"]);
+  assert.deepEqual(data.answers.map(({ share }) => share), [0.3, 1, 1, 0, 0.4, 0, 0, 0.5]);
+  assert.deepEqual(data.answers.map(({ time }) => time), [3, NaN, NaN, 0, NaN, NaN, NaN, 0.5]);
+  assert.equal(data.latest, 3);
+  assert.deepEqual([data.answers[0].hasPoint, data.answers[1].hasPoint], [true, false]);
+});
+
+test("another mode's answer names what is touched where the page's own names nothing", () => {
+  const [answer] = dataOf([{ ...CLEAR, others: { words: "", t: 5, object: 2 } }]).answers;
+  assert.deepEqual([answer.touched, answer.otherShare], [2, 0.5]);
+});
+
+test("colours by t look at each time once", () => {
+  const data = dataOf(Array.from({ length: 1000 }, (_, i) => ({ ...HIT, t: i / 100 }))), look = new Look(data);
+  let looks = 0;
+  for (const answer of data.answers) {
+    const { time } = answer;
+    Object.defineProperty(answer, "time", { get: () => (++looks, time) });
+  }
+  look.by = "t";
+  const colours = data.answers.map(({ query }) => look.colourOf(query));
+  assert.equal(looks, 1000);
+  assert.notDeepEqual(colours[0], colours[999]);
+});
+
+test("a list is filtered by kind, id and object, and sorted by a column, numbers that are none last", () => {
+  const rows = [{ ...HIT, id: "Ab" }, { ...CLEAR, id: "b" }, { ...HIT, id: "ba", t: 1, object: 1 }, { status: "invalid", id: "c" }];
+  const listing = new Listing(dataOf(rows));
+  const after = (change) => (change(), listing.rows);
+  assert.deepEqual(listing.rows, [0, 1, 2, 3]);
+  assert.deepEqual(after(() => listing.filter({ kinds: new Set(["hit"]) })), [0, 2]);
+  assert.deepEqual(after(() => listing.filter({ object: " 1 " })), [2]);
+  assert.deepEqual(after(() => listing.filter({ kinds: new Set(), object: "", id: "AB" })), [0]);
+  assert.deepEqual(after(() => listing.filter({ id: "" })), [0, 1, 2, 3]);
+  const column = (name) => COLUMNS.find((one) => one.name === name);
+  assert.deepEqual(after(() => listing.sort(column("t"))), [2, 0, 1, 3]);
+  assert.deepEqual(after(() => listing.sort(column("t"))), [3, 1, 0, 2]);
+  assert.deepEqual(after(() => listing.sort(column("query"))), [0, 1, 2, 3]);
+  assert.deepEqual([[1, 1], [1, -9], [1, Infinity], [-1, 1]].map(([query, steps]) => listing.beside(query, steps)), [2, 0, 3, 0]);
+  listing.filter({ id: "nothing" });
+  assert.equal(listing.beside(0, 1), undefined);
+});
+
+test("a pointer turns and moves, two zoom by how far apart they are, and only one that rests clicks", () => {
+  const camera = new Camera(), hands = new Hands(camera, { clientHeight: 100 });
+  const event = (pointerId, clientX, clientY, more = {}) => ({ pointerId, clientX, clientY, buttons: 1, ...more });
+  assert.equal(hands.move(event(1, 5, 5)), false);
+  hands.press(event(1, 0, 0));
+  hands.move(event(1, 1, 0));
+  assert.equal(hands.release(event(1, 1, 0)), true);
+  hands.press(event(1, 0, 0));
+  hands.move(event(1, 100, 1000));
+  assert.deepEqual([camera.yaw.toFixed(3), camera.pitch], ["-1.506", 1.57]);
+  assert.equal(hands.release(event(1, 100, 1000)), false);
+
+  Object.assign(camera, new Camera());
+  hands.press(event(1, 0, 0));
+  hands.press(event(2, 10, 0));
+  hands.move(event(2, 20, 0));
+  assert.equal(camera.distance, 0.5);
+  const middle = camera.pixel([0, 0, 0], 100, 100).map((x) => Number(x.toFixed(9)));
+  assert.deepEqual(middle, [55, 50, 0.5]);  // twice as large, and the middle of the two has moved by 5
+  assert.deepEqual([hands.release(event(2, 20, 0)), hands.release(event(1, 0, 0))], [false, false]);
+  hands.press(event(1, 0, 0));
+  hands.move(event(1, 10, 0, { shiftKey: true }));
+  assert.equal(camera.pixel([0, 0, 0], 100, 100)[0].toFixed(6), "65.000000");
+});
+
+test("arrows turn the view and move it with shift, plus and minus zoom", () => {
+  const camera = new Camera(), hands = new Hands(camera, { clientHeight: 100 }), start = { ...camera };
+  assert.equal(hands.key({ key: "x" }), false);
+  for (const key of ["ArrowLeft", "ArrowUp", "+"]) assert.equal(hands.key({ key }), true);
+  assert.ok(camera.yaw < start.yaw && camera.pitch > start.pitch && camera.distance < start.distance);
+  for (const key of ["ArrowRight", "ArrowDown", "-"]) hands.key({ key });
+  for (const name of ["yaw", "pitch", "distance"]) assert.ok(Math.abs(camera[name] - start[name]) < 1e-12, name);
+  hands.key({ key: "ArrowRight", shiftKey: true });
+  assert.ok(camera.pixel([0, 0, 0], 100, 100)[0] < 50);
+});
+
+test("buffers of meshes that another scene has not are freed", () => {
+  const freed = [], meshes = ["own", "shared", "box"];
+  const renderer = {
+    gl: { deleteBuffer: (buffer) => freed.push(buffer) },
+    meshBuffers: new Map(meshes.map((mesh) => [mesh, { positions: `${mesh} p`, indices: `${mesh} i` }])),
+  };
+  Renderer.prototype.keepOnly.call(renderer, ["shared", "box", "new"]);
+  assert.deepEqual(freed, ["own p", "own i"]);
+  assert.deepEqual([...renderer.meshBuffers.keys()], ["shared", "box"]);
+});

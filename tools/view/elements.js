@@ -1,0 +1,24 @@
+// Elements of the page, with the types that their tags have.
+
+/**
+ * The one with that id.
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {string} id
+ * @returns {HTMLElementTagNameMap[Tag]}
+ */
+export const the = (tag, id) => document.querySelector(`${tag}#${id}`);
+
+/**
+ * A new one, the last in its parent.
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Element} parent
+ * @param {Tag} tag
+ */
+export function made(parent, tag, className = "", text = "") {
+  const element = document.createElement(tag);
+  element.className = className;
+  element.textContent = text;
+  parent.append(element);
+  return element;
+}

@@ -8,7 +8,7 @@ import { Look } from "../../tools/view/look.js";
 import { Renderer } from "../../tools/view/renderer.js";
 import { COLUMNS, Listing } from "../../tools/view/table.js";
 import { Camera } from "../../tools/view/vectors.js";
-import { inWords } from "../../tools/view/words.js";
+import { contactInWords, inWords } from "../../tools/view/words.js";
 
 const NONE = 0xffffffff, TYPES = { u1: Uint8Array, u4: Uint32Array, f4: Float32Array, f8: Float64Array };
 const array = (type, values) => ({ [type]: Buffer.from(new TYPES[type](values).buffer).toString("base64") });
@@ -24,13 +24,14 @@ function answersOf(rows) {
   const places = Object.fromEntries(["point", "normal"].map((name) => [name, of("f8", name, [NaN, NaN, NaN])]));
   return { status: array("u1", rows.map(({ status }) => STATUSES.indexOf(status))), ...numbers, ...ids, ...places };
 }
+const firstOf = (rows) => rows.reduce((first, { hits = [] }) => [...first, first.at(-1) + hits.length], [0]);
 const STATUSES = ["hit", "clear", "overlap", "undecided", "invalid"];
 
 /**
  * What page.cpp writes of a scene of cubes of side 2 at x = 0, 10, 20, and sensors like them, which move 10 along x.
- * `rows`: of each query its answer, and what was asked: {id, at, asked, left, step}.
+ * `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left, ignored, id, at, asked, step}.
  */
-function dataOf(rows, more = {}) {
+function dataOf(rows) {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)));
   const by = (name) => Object.fromEntries(rows.flatMap((row, i) => (row[name] ? [[i, row[name]]] : [])));
   const objects = [0, 10, 20].map((x) => [x, 0, 0]);
@@ -46,8 +47,9 @@ function dataOf(rows, more = {}) {
   };
   return new Data(JSON.stringify({
     title: "", notes: [], tour: [], none: NONE, statuses: STATUSES, scenes: [scene], queries, answers: answersOf(rows),
+    hits: { ...answersOf(rows.flatMap(({ hits = [] }) => hits)), first: array("u4", firstOf(rows)) },
     meshes: [{ name: "cube", positions: array("f4", corners), indices: array("u4", [0, 1, 3, 4, 5, 7]) }],
-    left: by("left"), reasons: by("reasons"), others: by("others"), scopes: {}, ...more,
+    left: by("left"), reasons: by("reasons"), others: by("others"), scopes: {},
   }));
 }
 const HIT = { status: "hit", t: 3, lo: 3, hi: 3, object: 0, triA: 0, triB: 1, gap: 0, point: [-1, 0, 0], normal: [-1, 0, 0] };
@@ -148,4 +150,49 @@ test("buffers of meshes that another scene has not are freed", () => {
   Renderer.prototype.keepOnly.call(renderer, ["shared", "box", "new"]);
   assert.deepEqual(freed, ["own p", "own i"]);
   assert.deepEqual([...renderer.meshBuffers.keys()], ["shared", "box"]);
+});
+
+test("contacts that a query lists are answers of their own, and filters find their objects", () => {
+  const hits = [HIT, { ...HIT, t: 6, lo: 6, hi: 6, object: 2 }, { status: "undecided", t: Infinity, lo: 8, hi: Infinity, object: 1 }];
+  const data = dataOf([{ ...HIT, hits: [HIT] }, { ...HIT, hits }, CLEAR]), [one, several] = data.answers, look = new Look(data);
+  assert.deepEqual(one.contacts, []);
+  assert.deepEqual(several.contacts.map(contactInWords),
+    ["3: object 0 (cube)", "6: object 2 (cube)", "not before 8, if at all: object 1 (lid)"]);
+  assert.match(inWords(several.contacts[1])[0], /^Touches object 2 \(cube\) after 6, if nothing stops it before\.$/);
+  const listing = new Listing(data);
+  listing.filter({ object: "2" });
+  assert.deepEqual(listing.rows, [1]);
+  assert.deepEqual(data.answers.map(COLUMNS.find(({ name }) => name === "object").text), ["0", "0 + 2", ""]);
+  Object.assign(look, { chosen: 1, contact: 1 });
+  assert.deepEqual([look.gone(1), look.gone(0), look.answer.object], [0.6, 0.3, 2]);
+});
+
+test("words say what was asked: to touch, to come near, or to block", () => {
+  const answers = [
+    HIT, CLEAR, { status: "overlap", t: 0, lo: 0, hi: 0, object: 1, gap: 0.25 }, { status: "undecided", t: Infinity, lo: 4, hi: Infinity },
+    { status: "hit", t: 10, lo: 0, hi: 10, decide: true },
+  ];
+  const said = (asked) => dataOf(answers.map(({ decide, ...answer }) =>
+    ({ ...answer, asked: decide ? { ...asked, decide } : asked }))).answers.map((answer) => inWords(answer));
+  const first = (lines) => lines.map(([line]) => line.split(". Asked")[0]);
+  assert.deepEqual(first(said({})), [
+    "Free for 3, then it touches object 0 (cube).", "Touches nothing within 10.", "Touches object 1 (lid) where it starts.",
+    "Free for 4; contact after that is possible.", "Touches something within 10",
+  ]);
+  const near = said({ clearance: 0.75 });
+  assert.deepEqual(first(near), [
+    "Comes within 0.75 of object 0 (cube) after 3.", "Comes within 0.75 of nothing, within 10.",
+    "Is within 0.75 of object 1 (lid) at the start already.", "Keeps a distance of 0.75 for 4; after that it may come nearer.",
+    "Comes within 0.75 of something within 10",
+  ]);
+  const blocked = said({ ignore_leaving: true });
+  assert.deepEqual(first(blocked), [
+    "Free for 3, then object 0 (cube) blocks it.", "Nothing blocks it within 10.", "It is blocked where it starts, by object 1 (lid).",
+    "Free for 4; after that, something may block it.", "Something blocks it within 10",
+  ]);
+  assert.equal(blocked[0][1], "It may leave what it rests on, or slide along it (ignore_leaving).");
+  assert.equal(said({ ignore_leaving: true, clearance: 0.5 })[1][1],
+    "What blocks it comes within 0.5, and nearer than it starts (ignore_leaving).");
+  // With a gap, nothing touches; "contact" is no word for it.
+  for (const line of near.flatMap((lines, i) => (answers[i].gap === 0 ? [] : lines))) assert.doesNotMatch(line, /touch|meet|contact/i);
 });

@@ -9,6 +9,9 @@ import subprocess
 import pytest
 from selenium.webdriver import ActionChains, Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.actions import interaction
+from selenium.webdriver.common.actions.action_builder import ActionBuilder
+from selenium.webdriver.common.actions.pointer_input import PointerInput
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
@@ -207,11 +210,9 @@ def test_the_table_filters_and_sorts(view):
     identity.send_keys(Keys.BACKSPACE * 2)
     number.send_keys(Keys.BACKSPACE)
     chips["hit"].click()
-    heads = view.browser.find_elements(By.CSS_SELECTOR, ".heads button")
-    heads[2].click()
+    view.browser.find_elements(By.CSS_SELECTOR, ".heads button")[2].click()
     assert view.ids() == ["inside", "short", "back", "long", "free"]
-    heads[2].click()
-    assert view.ids() == ["free", "long", "short", "back", "inside"]
+    assert view.run("return [...document.querySelectorAll('.heads span')].map((head) => head.ariaSort)[2]") == "ascending"
 
 
 def test_a_click_chooses_what_is_under_it(view):
@@ -246,6 +247,57 @@ def test_keys_choose_and_play(view):
     assert view.run("return view.look.time") == 1
     body.send_keys(Keys.ESCAPE)
     assert view.run("return view.look.chosen") == -1
+
+
+def test_the_focus_decides_what_keys_do(view):
+    def press(selector, *keys):
+        """Gives the focus as the tabulator does: by clicks, a canvas gets none."""
+        view.run("document.querySelector(arguments[0]).focus()", selector)
+        for key in keys:
+            ActionChains(view.browser).send_keys(key).perform()
+        return view.run("return [view.look.chosen, view.camera.yaw, view.camera.distance]")
+
+    chosen, yaw, distance = press("#scene")
+    assert press("#scene", Keys.ARROW_LEFT, Keys.ARROW_DOWN) == [chosen, pytest.approx(yaw - 0.1), distance]
+    assert press("#scene", "+")[2] == pytest.approx(distance / 1.2)
+    assert press(".scroller", Keys.END)[0] == 4
+    assert view.run("return document.querySelector('#' + view.table.scroller.getAttribute('aria-activedescendant')).ariaSelected") == "true"
+    assert press(".scroller", Keys.ARROW_UP)[0] == 3
+    assert press(".scroller", Keys.HOME, Keys.PAGE_DOWN)[0] == 4
+    assert press("#by", Keys.ARROW_DOWN)[0] == 4 and view.run("return view.look.by") == "t"
+    press(".chip", " ")
+    assert view.ids() == ["short", "long", "back"] and not view.run("return view.playing")
+    press("#time", Keys.HOME, " ")
+    assert view.run("return view.playing")
+    view.browser.find_element(By.ID, "scene").click()
+    assert view.run("return document.activeElement === document.body")
+
+
+def test_two_fingers_zoom(view):
+    fingers = ActionBuilder(view.browser, mouse=PointerInput(interaction.POINTER_TOUCH, "one"))
+    one, two = fingers.pointer_action.source, fingers.add_pointer_input(interaction.POINTER_TOUCH, "two")
+    before, chosen = view.run("return [view.camera.distance, view.look.chosen]")
+    for finger, x in ((one, 200), (two, 300)):
+        finger.create_pointer_move(x=x, y=300)
+        finger.create_pointer_down()
+    one.create_pause(0.1)
+    two.create_pointer_move(x=400, y=300)
+    for finger in (one, two):
+        finger.create_pointer_up(0)
+    fingers.perform()
+    assert view.run("return [view.camera.distance, view.look.chosen]") == [pytest.approx(before / 2), chosen]
+
+
+def test_a_lost_context_returns(view):
+    view.choose(1)
+    view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    view.run("window.loss = view.renderer.gl.getExtension('WEBGL_lose_context'); loss.loseContext(); view.change()")
+    view.wait("document.querySelector('#note').textContent.includes('has lost its graphics device')")
+    view.run("loss.restoreContext()")
+    view.wait("document.querySelector('#note').textContent.trim() === ''")
+    assert is_like(view.colour_at((-2 + 0.5, -1, 0.6)), "hit")
+    # The browser says that it was lost.
+    assert all("CONTEXT_LOST_WEBGL" in entry["message"] for entry in view.errors())
 
 
 def test_text_of_a_batch_is_text(browser, tmp_path):
@@ -331,8 +383,6 @@ def test_an_answer_to_whether_there_is_a_contact_says_no_more(browser, tmp_path)
     ]
     view = View(browser, make_page(tmp_path, queries))
     assert view.run("return [view.camera.distance, ...view.camera.target].every(Number.isFinite)")
-    assert "Touches something within 10." in words_of(view, 0)
-    assert "Comes within 0.75 of something within 10." in words_of(view, 1)
     assert [row[2:] for row in view.rows()] == [["≤ 10", "", "", "decide"], ["≤ 10", "", "", "decide, clearance 0.75"]]
     view.choose(0)
     view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
@@ -343,24 +393,41 @@ def test_an_answer_to_whether_there_is_a_contact_says_no_more(browser, tmp_path)
 def test_a_gap_is_no_contact_and_is_drawn_with_its_length(browser, tmp_path):
     queries = [
         {"id": "comes near", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10, "clearance": 0.75},
-        {"id": "is near", "sensor": at(0, -2.5, 0, 0), "dir": [1, 0, 0], "D": 10, "clearance": 0.75},
-        {"id": "passes", "sensor": at(0, -5, 5, 0), "dir": [1, 0, 0], "D": 10, "clearance": 0.75},
     ]
     view = View(browser, make_page(tmp_path, queries))
     # As if an answer had the length, and as if it had not.
-    for gaps in ("[0.75, 0.5, NaN]", "[NaN, NaN, NaN]"):
-        view.run(f"{gaps}.forEach((gap, i) => (view.data.answers[i].gap = gap)); view.overlay.key = ''; view.change()")
+    for gap in ("0.75", "NaN"):
+        view.run(f"view.data.answers[0].gap = {gap}; view.overlay.key = ''; view.change()")
         comes = words_of(view, 0)
         assert "Comes within 0.75 of object 0 (cube.obj) after 2.25." in comes
-        assert ("The gap is then 0.75 long" in comes) == (gaps != "[NaN, NaN, NaN]")
+        assert ("The gap is then 0.75 long" in comes) == (gap != "NaN")
         labels = view.browser.find_element(By.ID, "labels").text
-        assert ("0.75" in labels) == (gaps != "[NaN, NaN, NaN]")
-        assert ("the gap" in legend(view)) == (gaps != "[NaN, NaN, NaN]")
-        assert "Is within 0.75 of object 0 (cube.obj) at the start already." in words_of(view, 1)
-        assert "Comes within 0.75 of nothing, within 10." in words_of(view, 2)
-        for query in range(3):
-            words = words_of(view, query)
-            assert not any(word in words.lower() for word in ("touch", "meet", "contact"))
+        assert ("0.75" in labels) == (gap != "NaN")
+        assert ("the gap" in legend(view)) == (gap != "NaN")
+    assert view.errors() == []
+
+
+def test_all_contacts_that_a_query_lists_are_shown(browser, tmp_path):
+    queries = [
+        {"id": "several", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 30, "hits": "all", "ignore_leaving": True},
+        {"id": "one", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10},
+    ]
+    view = View(browser, make_page(tmp_path, queries))
+    assert [(row[4], row[5]) for row in view.rows()] == [("0 + 2", "ignore_leaving, hits all"), ("0", "")]
+    words = words_of(view, 0)
+    assert "Free for 3, then object 0 (cube.obj) blocks it." in words and "It may leave what it rests on" in words
+    assert view.browser.find_element(By.ID, "labels").text.count("cube.obj") == 3
+    buttons = view.browser.find_elements(By.CSS_SELECTOR, "#chosen li button")
+    assert [button.text for button in buttons] == [f"{3 + 10 * i}: object {i} (cube.obj)" for i in range(3)]
+    buttons[2].click()
+    view.wait("!view.flight && !view.stale")
+    assert "After 23, object 2 (cube.obj) blocks it, if nothing does before." in view.browser.find_element(By.ID, "chosen").text
+    assert view.run("return document.activeElement.ariaPressed") == "true"
+    view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    assert is_like(view.colour_at((18 + 0.5, -1, 0.6)), "hit")
+    assert "listed contacts" in legend(view)
+    view.choose(1)
+    assert view.browser.find_elements(By.CSS_SELECTOR, "#chosen li") == []
     assert view.errors() == []
 
 

@@ -52,6 +52,26 @@ Result resultOf(const RowReader& row, Status status, const Workload& workload, c
   return result;
 }
 
+/// The members of a line, or of a contact in its list.
+RowReader membersOf(const JsonValue& from, const std::string& place, const QuerySpec& query) {
+  return {place, query, [from](const char* name, size_t part) {
+            if (!from.has(name) || from.member(name).json().is_null()) return double{NAN};
+            const JsonValue value = from.member(name);
+            if (!value.json().is_array()) return value.number();
+            if (value.size() != 3) value.expected("three numbers");
+            return value[part].json().is_null() ? NAN : value[part].number();  // too large for a double
+          }};
+}
+
+/// A contact in a list, which has no status of its own, and none of `fraction`.
+Result contactOf(const RowReader& row, const Workload& workload, const std::string& file) {
+  const double hi = row.number(row.query.motion ? "fraction_hi" : "hi", 0);
+  const Status status = std::isnan(hi) ? Status::undecided : hi == 0 ? Status::overlap : Status::hit;
+  Result contact = resultOf(row, status, workload, file);
+  if (row.query.motion && status != Status::undecided) contact.t = contact.lo;
+  return contact;
+}
+
 [[noreturn]] void refuseCount(const std::string& file, uint64_t expected, uint64_t got) {
   throw InputError(file, "",
                    "expected " + counted(expected, "answer") + ", one for each query, got " + std::to_string(got));
@@ -70,16 +90,17 @@ std::vector<Answer> readLines(const std::string& file, std::string_view text, co
     if (const std::string id = root.member("id").string(); id != query.id) {
       throw InputError(file, place, "expected the answer to query \"" + query.id + "\", got that to \"" + id + "\"");
     }
-    const RowReader row{place, query, [&](const char* name, size_t part) {
-                          if (!json.contains(name) || json[name].is_null()) return double{NAN};
-                          const JsonValue value = root.member(name);
-                          if (!json[name].is_array()) return value.number();
-                          if (value.size() != 3) value.expected("three numbers");
-                          return value[part].json().is_null() ? NAN : value[part].number();  // too large for a double
-                        }};
+    const RowReader row = membersOf(root, place, query);
     Answer& answer = answers.emplace_back();
     const JsonValue status = root.member("status");
     answer.result = resultOf(row, status.guard([&] { return statusFrom(status.string()); }), workload, file);
+    root.ifHas("hits", [&](const JsonValue& list) {
+      list.forEach([&](const JsonValue& hit) {
+        hit.member("object").index(workload.objectCount(query.scene), "objects");
+        const std::string at = place + ": hits[" + std::to_string(answer.listed.hits.size()) + "]";
+        answer.listed.hits.push_back(contactOf(membersOf(hit, at, query), workload, file));
+      });
+    });
     root.ifHas("overlapping", [&](const JsonValue& list) {
       const size_t objects = workload.objectCount(query.scene);
       list.forEach(

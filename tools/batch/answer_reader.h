@@ -9,7 +9,7 @@
 namespace radar::tools {
 
 /// The answers to a workload's queries, as cyber-radar query wrote them: lines, or records in a file .npy. Reads all
-/// but what only some answers have: features, tier, detected, hits and paper_min_l. Throws InputError that names file
+/// but what only some answers have: features, tier, detected and paper_min_l. Throws InputError that names file
 /// and row if they are not of these queries.
 std::vector<Answer> readAnswers(const std::filesystem::path& file, const Workload& workload);
 

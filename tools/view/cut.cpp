@@ -7,15 +7,22 @@ namespace radar::tools {
 
 namespace {
 
-constexpr uint32_t kMostObjects = 100'000, kMostTriangles = 3'000'000;
-// Vertices need 12 bytes, so that a page of this many is about 50 MB.
+constexpr uint32_t kMostObjects = 100'000, kMostTriangles = 3'000'000, kMostListed = 100'000;
+// Vertices need 12 bytes, and listed contacts 150, so that a page of this many is about 70 MB.
 
 }  // namespace
 
-Cut::Cut(const Workload& workload, std::span<const Result> answers, const LeftOut& left, uint64_t all)
+Cut::Cut(const Workload& workload, std::span<const Result> answers, const LeftOut& left, uint64_t all,
+         const ListedHits& hits)
     : workload_(workload) {
-  queries_ = std::min<size_t>(workload.queries.size(), kMostShownQueries);
+  queries_ = listing_ = std::min<size_t>(workload.queries.size(), kMostShownQueries);
   if (queries_ < all) note("The first " + std::to_string(queries_) + " of " + std::to_string(all) + " queries.");
+  size_t listed = 0;
+  for (const auto& [query, contacts] : hits) {
+    listed += contacts.size();
+    if (listed > kMostListed) listing_ = std::min<size_t>(listing_, query);
+  }
+  if (listing_ < queries_) note("Lists of contacts are those of the first " + std::to_string(listing_) + " queries.");
   for (uint32_t i = 0; i < queries_; ++i) {
     const uint32_t scene = workload.queries[i].scene;
     for (const uint32_t part : {scene, workload.scenes[scene].base.value_or(scene)}) {
@@ -23,6 +30,9 @@ Cut::Cut(const Workload& workload, std::span<const Result> answers, const LeftOu
       if (answers[i].object != kNone) touched_[part].insert(answers[i].object);
       if (const auto found = left.find(i); found != left.end()) {
         touched_[part].insert(found->second.begin(), found->second.end());
+      }
+      if (const auto found = hits.find(i); found != hits.end() && i < listing_) {
+        for (const Result& hit : found->second) touched_[part].insert(hit.object);
       }
     }
   }

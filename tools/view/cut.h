@@ -14,6 +14,9 @@ namespace radar::tools {
 /// By query: the objects that skipOverlapping left out, ascending; only of queries that left some out.
 using LeftOut = std::map<uint32_t, std::vector<uint32_t>>;
 
+/// By query: the first contacts that it lists (Query::hits), only of queries that list some.
+using ListedHits = std::map<uint32_t, std::vector<Result>>;
+
 /// No picture has more; the first are shown.
 inline constexpr uint32_t kMostShownQueries = 10'000;
 
@@ -21,13 +24,16 @@ inline constexpr uint32_t kMostShownQueries = 10'000;
 class Cut {
  public:
   /// An answer for each query of the workload. `all`: how many queries there are.
-  Cut(const Workload& workload, std::span<const Result> answers, const LeftOut& left, uint64_t all);
+  Cut(const Workload& workload, std::span<const Result> answers, const LeftOut& left, uint64_t all,
+      const ListedHits& hits = {});
 
   /// The largest meshes become boxes until the others have no more than three million triangles.
   void boxMeshes();
   bool isBoxed(size_t mesh) const { return boxed_.contains(mesh); }
   /// The first so many are shown.
   size_t queries() const { return queries_; }
+  /// The lists of so many first queries are shown: no more than 100,000 contacts.
+  size_t listing() const { return listing_; }
   /// A scene that neither a query nor such a scene needs is left out.
   bool hasScene(uint32_t scene) const { return workload_.queries.empty() || scenes_.contains(scene); }
   /// Numbers among the scene's own instances, of which the first has the number `first`: no more than 100,000 with
@@ -39,7 +45,7 @@ class Cut {
   void note(const std::string& sentence);
 
   const Workload& workload_;
-  size_t queries_ = 0;
+  size_t queries_ = 0, listing_ = 0;
   std::set<uint32_t> scenes_;
   std::map<uint32_t, std::set<uint32_t>> touched_;  ///< by scene: objects that answers name
   std::set<size_t> boxed_;

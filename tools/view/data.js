@@ -18,7 +18,8 @@ import { lengthOf, plus, times } from "./vectors.js";
  * @typedef {{width: number, height: number, pixel: number, d: number, length: number, R: Float32Array, M: Float32Array,
  *   L: Float32Array, origin: number[], right: number[], up: number[], forward: number[]}} Scopes
  * @typedef {{title: string, notes: string[], tour: {query?: number, play?: string}[], none: number, statuses: string[],
- *   meshes: object[], scenes: SceneRow[], queries: Queries, answers: Answers, left: Record<number, number[]>,
+ *   meshes: object[], scenes: SceneRow[], queries: Queries, answers: Answers,
+ *   hits: Answers & {first: Uint32Array}, left: Record<number, number[]>,
  *   reasons: Record<number, string>, others: Record<number, {words: string, t: ?number, object: number}>,
  *   scopes: Record<number, Scopes>}} Written
  */
@@ -44,18 +45,22 @@ function joined(first, second) {
   return all;
 }
 
-/** An answer to a query. Ids are Data.none, numbers NaN, where there is none. */
+/** An answer to a query, or a contact that it lists. Ids are Data.none, numbers NaN, where there is none. */
 export class Answer {
   /**
    * @param {Data} data
    * @param {number} query
    * @param {Answers} from
    * @param {number} i
+   * @param {boolean} isListed
    */
-  constructor(data, query, from, i) {
+  constructor(data, query, from, i, isListed = false) {
     const asked = data.queries.asked[query] ?? {};
     this.data = data;
     this.query = query;
+    this.isListed = isListed;
+    /** @type {?Answer[]} */
+    this.list = null;
     this.status = data.statuses[from.status[i]];
     this.t = from.t[i];
     this.lo = from.lo[i];
@@ -102,6 +107,11 @@ export class Answer {
     const other = this.data.others[this.query];
     return other && other.t !== null ? this.data.fractionOf(this.query, other.t) : null;
   }
+  /** The first contacts with the nearest objects, if the query lists several. @returns {Answer[]} */
+  get contacts() {
+    const { data: { hits }, data, query } = this, begin = hits.first[query], count = hits.first[query + 1] - begin;
+    return (this.list ??= count < 2 ? [] : Array.from({ length: count }, (_, i) => new Answer(data, query, hits, begin + i, true)));
+  }
   /** The object touched, by this answer or by another mode's. */
   get touched() {
     const other = this.data.others[this.query];
@@ -121,6 +131,7 @@ export class Data {
     this.statuses = written.statuses;
     this.scenes = written.scenes;
     this.queries = written.queries;
+    this.hits = written.hits;
     this.left = written.left;
     this.reasons = written.reasons;
     this.others = written.others;

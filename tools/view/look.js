@@ -5,6 +5,9 @@ import { frameOf } from "./scopes.js";
 import { between, cross, lengthOf, minus, plus, times, unit } from "./vectors.js";
 import { inDigits } from "./words.js";
 
+// Of contacts in a list.
+const MOST_LABELS = 20;
+
 /** A way of looking at the answers: which queries, how far along their ways, and what is chosen. */
 export class Look {
   /** @param {import("./data.js").Data} data */
@@ -13,6 +16,8 @@ export class Look {
     this.scene = data.queries.count ? data.queries.scene[0] : 0;
     /** A query; -1: none. */
     this.chosen = -1;
+    /** Which of the contacts that it lists is looked at; -1: its answer. */
+    this.contact = -1;
     /** Where it is in the scene; -1: none. */
     this.object = -1;
     /** @type {number[]} queries that the table shows */
@@ -22,13 +27,17 @@ export class Look {
     this.by = "status";
   }
 
-  /** The answer to the chosen query; undefined if none is chosen. */
+  /** What is looked at of a query: its answer, or of the chosen one a contact that it lists; undefined of no query. */
+  answerTo(query) {
+    const answer = this.data.answers[query];
+    return query === this.chosen && this.contact >= 0 ? answer.contacts[this.contact] : answer;
+  }
   get answer() {
-    return this.data.answers[this.chosen];
+    return this.answerTo(this.chosen);
   }
   /** The part of its way that a query's sensor has gone. */
   gone(query) {
-    const { share } = this.data.answers[query];
+    const { share } = this.answerTo(query);
     return this.alone && query === this.chosen ? this.time * share : Math.min(this.time, share);
   }
   /** The part of the step that has passed, for objects. */
@@ -69,11 +78,13 @@ export class Look {
     const { data, chosen } = this, { objects, numbers, place: places, ways } = data.scene(this.scene);
     const passed = this.passed(), rest = [0, 0, 0], touched = places.get(this.answer?.touched);
     const ignored = new Set(data.queries.ignored[chosen]), left = new Set(data.left[chosen]);
+    const rank = new Map((data.answers[chosen]?.contacts ?? []).map(({ object }, i) => [object, i + 1]));
     for (let i = 0; i < objects.count; ++i) {
       if (moving.has(i)) continue;
-      const number = numbers[i], isLeft = left.has(number), isMarked = i === touched || i === this.object || isLeft;
+      const number = numbers[i], isLeft = left.has(number), isTouched = i === touched || i === this.object;
+      const isMarked = isTouched || isLeft || rank.has(number);
       let colour = this.by === "object" ? hashed(number) : COLOURS.object;
-      if (isMarked) colour = isLeft ? COLOURS.part : COLOURS.touched;
+      if (isMarked) colour = isLeft ? COLOURS.part : isTouched ? COLOURS.touched : COLOURS.listed;
       const moved = ways.has(i) ? times(passed, ways.get(i)) : rest;
       const isGlass = isLeft || ignored.has(number) || (seen && stage.hides(objects, i, moved, seen));
       if (isGlass) stage.glass(objects, i, moved, colour, isMarked);
@@ -81,13 +92,15 @@ export class Look {
       if (!isMarked) continue;
       const place = plus(objects.centreOf(i), moved);
       if (objects.radius[i] < 0.02 * stage.camera.distance) stage.mark(place, colour, 22, "ring");
-      stage.label(minus(place, times(0.7 * objects.radius[i], stage.up)), isLeft ? `${data.called(this.scene, number)}, left out` : data.called(this.scene, number));
+      if (!isTouched && !isLeft && rank.get(number) > MOST_LABELS) continue;
+      const name = data.called(this.scene, number), label = rank.has(number) ? `${rank.get(number)}: ${name}` : name;
+      stage.label(minus(place, times(0.7 * objects.radius[i], stage.up)), isLeft ? `${label}, left out` : label);
     }
   }
 
   fillSensor(stage, query, seen, crowd) {
     const { data, chosen } = this, { sensors } = data, way = data.way(query), isChosen = query === chosen;
-    const { kind, hasPoint, saysOnlyWhether, share } = data.answers[query];
+    const { kind, hasPoint, saysOnlyWhether, share } = this.answerTo(query);
     const colour = this.colourOf(query), isPale = chosen >= 0 && !isChosen;
     if (isChosen) this.explain(stage, this.answer);
     if (kind !== "invalid") {
@@ -120,6 +133,7 @@ export class Look {
       const tick = at(data.fractionOf(chosen, t));
       stage.line(minus(tick, across), plus(tick, across), COLOURS.path, 2);
     }
+    for (const contact of data.answers[chosen].contacts) stage.mark(at(contact.share), COLOURS.listed, 9, "ring");
     this.explainContact(stage, answer);
     if (other !== null && Math.abs(other - share) > 1e-3) {
       const moved = times(other, way);

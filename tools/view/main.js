@@ -12,7 +12,7 @@ import { drawScopes } from "./scopes.js";
 import { BOX, Stage, TRIANGLE } from "./stage.js";
 import { Table } from "./table.js";
 import { Camera, between, plus, times } from "./vectors.js";
-import { inWords, kindInWords, sizeInWords } from "./words.js";
+import { contactInWords, inWords, kindInWords, sizeInWords } from "./words.js";
 
 class Page {
   /** @param {string} text */
@@ -62,7 +62,7 @@ class Page {
   /** Chooses a query; -1: none. */
   choose(query, { fly = false } = {}) {
     if (query === undefined) return;
-    this.change({ chosen: query, object: -1, scene: query < 0 ? this.look.scene : this.data.queries.scene[query] });
+    this.change({ chosen: query, contact: -1, object: -1, scene: query < 0 ? this.look.scene : this.data.queries.scene[query] });
     this.table.mark(query);
     this.describe();
     if (fly && query >= 0) this.flyTo(query);
@@ -108,13 +108,14 @@ class Page {
   }
   flyTo(query) {
     const { data } = this, { sensors } = data, start = sensors.centreOf(query), radius = sensors.radius[query];
-    const bounds = new Bounds(), { objects, place } = data.scene(data.queries.scene[query]), answer = data.answers[query];
-    for (const share of [0, answer.share, answer.otherShare ?? 0]) {
+    const bounds = new Bounds(), { objects, place } = data.scene(data.queries.scene[query]), answer = this.look.answerTo(query);
+    const listed = answer.isListed ? [] : answer.contacts;
+    for (const share of [0, answer.share, answer.otherShare ?? 0, ...listed.map((contact) => contact.share)]) {
       bounds.add(plus(start, times(share, data.way(query))), radius);
     }
     // What it meets, or what was left out, if it is not much larger.
     const most = bounds.diagonal;
-    for (const object of [answer.touched, ...(data.left[query] ?? [])]) {
+    for (const object of [answer.touched, ...listed.map((contact) => contact.object), ...(data.left[query] ?? [])]) {
       const i = place.get(object);
       if (i !== undefined && objects.radius[i] < most) bounds.add(objects.centreOf(i), objects.radius[i]);
     }
@@ -201,14 +202,31 @@ class Page {
       const name = data.nameOf(look.scene, number);
       if (name) made(place, "p", "", name);
       made(place, "p", "", sizeInWords("Mesh", objects.meshOf(look.object)));
-      const only = made(place, "button", "", "Show what stops at it");
+      const only = made(place, "button", "", "Show what meets it");
       only.onclick = () => this.table.filter({ object: `${number}` });
     }
     if (query < 0) return;
     const { kind } = look.answer, head = made(place, "h2", kind, `${SYMBOLS[kind]} ${data.queries.id[query]}`);
     head.title = kindInWords(kind);
     for (const line of inWords(look.answer)) made(place, "p", "", line);
+    const { contacts } = data.answers[query];
+    if (contacts.length) made(place, "p", "", "First contacts, one with each object:");
+    this.describeContacts(made(place, "ol"), contacts);
     if (data.scopes[query]) drawScopes(place, data.scopes[query]);
+  }
+  /** Buttons that show the contacts that a query lists. */
+  describeContacts(list, contacts) {
+    const shown = this.look.answer.object;
+    contacts.forEach((contact, i) => {
+      const button = made(made(list, "li"), "button", contact.status, contactInWords(contact));
+      button.ariaPressed = `${contact.object === shown}`;
+      button.onclick = () => {
+        this.change({ contact: i });
+        this.describe();
+        the("div", "chosen").querySelectorAll("button")[i].focus();
+        this.flyTo(contact.query);
+      };
+    });
   }
 
   // Hands on

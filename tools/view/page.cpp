@@ -204,6 +204,21 @@ Json answersJson(std::span<const Result> answers) {
           {"normal", array(normal)}, {"gap", array(gap)}};
 }
 
+/// The contacts in lists, one after the other; "first": where those of each query begin, and at last their number.
+Json hitsJson(const ListedHits& lists, size_t queries, size_t listing) {
+  std::vector<Result> all;
+  std::vector<uint32_t> first;
+  for (uint32_t i = 0; i < queries; ++i) {
+    first.push_back(static_cast<uint32_t>(all.size()));
+    const auto found = lists.find(i);
+    if (i < listing && found != lists.end()) all.insert(all.end(), found->second.begin(), found->second.end());
+  }
+  first.push_back(static_cast<uint32_t>(all.size()));
+  Json json = answersJson(all);
+  json["first"] = array(first);
+  return json;
+}
+
 Json scopesJson(const Scopes& scopes) {
   return {{"width", scopes.width},   {"height", scopes.height}, {"pixel", scopes.pixel}, {"d", scopes.d},
           {"length", scopes.length}, {"R", array(scopes.R)},    {"M", array(scopes.M)},  {"L", array(scopes.L)},
@@ -228,7 +243,7 @@ Json byQuery(const std::map<uint32_t, Value>& entries, size_t queries, const Mak
 }  // namespace
 
 std::string pageOf(const Workload& workload, std::span<const Result> answers, const PageContent& content) {
-  Cut cut(workload, answers, content.left, std::max<uint64_t>(content.queries, workload.queries.size()));
+  Cut cut(workload, answers, content.left, std::max<uint64_t>(content.queries, workload.queries.size()), content.hits);
   cut.boxMeshes();
   const size_t count = cut.queries();
   const auto asItIs = [](const std::string& text) { return text; };
@@ -249,6 +264,7 @@ std::string pageOf(const Workload& workload, std::span<const Result> answers, co
   for (uint32_t i = 0; i < workload.scenes.size(); ++i) json["scenes"].push_back(sceneJson(workload, i, cut));
   json["queries"] = queriesJson(workload, std::span(workload.queries).first(count));
   json["answers"] = answersJson(answers.first(count));
+  json["hits"] = hitsJson(content.hits, count, cut.listing());
   json["left"] = byQuery(content.left, count, [](const std::vector<uint32_t>& objects) { return objects; });
   json["reasons"] = byQuery(content.reasons, count, asItIs);
   json["others"] = byQuery(content.others, count, otherJson);

@@ -23,6 +23,7 @@ struct PageContent {
   uint64_t queries = 0;                     ///< how many there are, if the workload has only the first of them
   std::map<uint32_t, std::string> reasons;  ///< by query: why it is invalid
   LeftOut left;
+  ListedHits hits;
   std::map<uint32_t, OtherAnswer> others;  ///< by query
   std::map<uint32_t, Scopes> scopes;       ///< by query
   /// What plays when the page is opened: a query, from its start to its contact, and then all at once.

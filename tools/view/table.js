@@ -6,7 +6,7 @@ import { askedInWords, inDigits, kindInWords } from "./words.js";
 
 /**
  * @typedef {import("./data.js").Answer} Answer
- * @typedef {{name: string, value: (answer: Answer) => number | string, text: (answer: Answer) => string}} Column
+ * @typedef {{name: string, isNumber?: boolean, value: (answer: Answer) => number | string, text: (answer: Answer) => string}} Column
  */
 
 /** @type {Column[]} `value` sorts. */
@@ -17,15 +17,15 @@ export const COLUMNS = [
   },
   { name: "query", value: ({ data, query }) => data.queries.id[query], text: ({ data, query }) => data.queries.id[query] },
   {
-    name: "t", value: ({ saysOnlyWhether, t, hi }) => (saysOnlyWhether ? hi : t),
+    name: "t", isNumber: true, value: ({ saysOnlyWhether, t, hi }) => (saysOnlyWhether ? hi : t),
     text: ({ saysOnlyWhether, t, hi }) => (saysOnlyWhether ? `≤ ${inDigits(hi)}` : inDigits(t)),
   },
-  { name: "hi − lo", value: ({ width }) => width, text: ({ width }) => inDigits(width, 2) },
+  { name: "hi − lo", isNumber: true, value: ({ width }) => width, text: ({ width }) => inDigits(width, 2) },
   {
-    name: "object", value: ({ object }) => object,
-    text: ({ data, query, object }) => {
+    name: "object", isNumber: true, value: ({ object }) => object,
+    text: ({ data, query, object, contacts }) => {
       const name = object === data.none ? "" : data.nameOf(data.queries.scene[query], object);
-      return object === data.none ? "" : name ? `${object} (${name})` : `${object}`;
+      return object === data.none ? "" : `${object}${name ? ` (${name})` : ""}${contacts.length ? ` + ${contacts.length - 1}` : ""}`;
     },
   },
   { name: "asked", value: askedInWords, text: askedInWords },
@@ -56,7 +56,7 @@ export class Listing {
     this.rows = this.answers.filter((answer) =>
       (kinds.size === 0 || kinds.has(answer.kind)) &&
       (part === "" || answer.data.queries.id[answer.query].toLowerCase().includes(part)) &&
-      (number === "" || `${answer.object}` === number)).map(({ query }) => query);
+      (number === "" || [answer, ...answer.contacts].some(({ object }) => `${object}` === number))).map(({ query }) => query);
   }
 
   /** By a column; again: the other way round. */
@@ -134,7 +134,7 @@ export class Table {
     row.setAttribute("role", "row");
     row.ariaRowIndex = "1";
     return this.columns.map((column) => {
-      const cell = made(row, "span"), head = made(cell, "button", "", column.name);
+      const cell = made(row, "span", column.isNumber ? "number" : ""), head = made(cell, "button", "", column.name);
       cell.setAttribute("role", "columnheader");
       head.title = `Sort by ${column.name}`;
       head.onclick = () => {
@@ -199,7 +199,7 @@ export class Table {
     row.style.top = `${place * ROW_HEIGHT}px`;
     row.onclick = () => this.choose(query);
     this.columns.forEach((column, k) => {
-      const text = column.text(answer), cell = made(row, "span", k === 0 ? kind : k > 1 ? "number" : "", text);
+      const text = column.text(answer), cell = made(row, "span", k === 0 ? kind : column.isNumber ? "number" : "", text);
       cell.setAttribute("role", "gridcell");
       cell.title = text;
     });

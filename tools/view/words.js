@@ -20,31 +20,52 @@ function listed(data, scene, objects) {
 
 const precisely = (value) => inDigits(value, 9);
 
+/** Sentences by what counts as contact: with what a query leaves, near, or touching. */
+function sentencesOf({ leaves, clearance, gap }, { what, time, within, other }) {
+  const near = precisely(clearance), touching = `Touches ${what} where it starts.`;
+  if (leaves) {
+    return {
+      whether: `Something blocks it ${within}.`, hit: `Free for ${time}, then ${what} blocks it.`,
+      listed: `After ${time}, ${what} blocks it, if nothing does before.`,
+      clear: `Nothing${other} blocks it ${within}.`, overlap: `It is blocked where it starts, by ${what}.`,
+      undecided: `Free for ${time}; after that, something may block it.`,
+    };
+  }
+  if (clearance > 0) {
+    return {
+      whether: `Comes within ${near} of something ${within}.`, hit: `Comes within ${near} of ${what} after ${time}.`,
+      listed: `Comes within ${near} of ${what} after ${time}, if nothing stops it before.`,
+      clear: `Comes within ${near} of nothing${other}, ${within}.`,
+      overlap: gap === 0 ? touching : `Is within ${near} of ${what} at the start already.`,
+      undecided: `Keeps a distance of ${near} for ${time}; after that it may come nearer.`,
+    };
+  }
+  return {
+    whether: `Touches something ${within}.`, hit: `Free for ${time}, then it touches ${what}.`,
+    listed: `Touches ${what} after ${time}, if nothing stops it before.`,
+    clear: `Touches nothing${other} ${within}.`, overlap: touching,
+    undecided: `Free for ${time}; contact after that is possible.`,
+  };
+}
+
 /** The answer itself, in a sentence or two. */
 function answerInWords(/** @type {import("./data.js").Answer} */ answer) {
-  const { data, query, object, gap, clearance } = answer, { queries } = data, isNear = clearance > 0;
-  const step = queries.step[query];
-  const what = object === data.none ? "something" : data.called(queries.scene[query], object);
-  const after = (value) => `${precisely(value)}${step ? " of the step" : ""}`;
-  const within = step ? "during the step" : `within ${precisely(queries.whole[query])}`, rest = data.left[query] ? " else" : "";
-  if (answer.saysOnlyWhether) {
-    const does = isNear ? `Comes within ${precisely(clearance)} of something` : "Touches something";
-    return `${does} ${within}. Asked was only whether (decide): not what or when; at the start counts, too.`;
-  }
-  switch (answer.status) {
-    case "hit":
-      if (!isNear) return `Free for ${after(answer.t)}, then it touches ${what}.`;
-      return `Comes within ${precisely(clearance)} of ${what} after ${after(answer.t)}.`;
-    case "clear":
-      return isNear ? `Comes within ${precisely(clearance)} of nothing${rest}, ${within}.` : `Touches nothing${rest} ${within}.`;
-    case "overlap":
-      if (!isNear || gap === 0) return `Touches ${what} where it starts.`;
-      return `Is within ${precisely(clearance)} of ${what} at the start already.`;
-    case "undecided":
-      if (!isNear) return `Free for ${after(answer.lo)}; contact after that is possible.`;
-      return `Keeps a distance of ${precisely(clearance)} for ${after(answer.lo)}; after that it may come nearer.`;
-  }
-  return "Not answered.";
+  const { data, query, object, status } = answer, { queries } = data, step = queries.step[query];
+  const time = precisely(status === "undecided" ? answer.lo : answer.t);
+  const sentences = sentencesOf(answer, {
+    what: object === data.none ? "something" : data.called(queries.scene[query], object),
+    time: step ? `${time} of the step` : time,
+    within: step ? "during the step" : `within ${precisely(queries.whole[query])}`,
+    other: data.left[query] ? " else" : "",
+  });
+  if (!answer.saysOnlyWhether) return sentences[status === "hit" && answer.isListed ? "listed" : status] ?? "Not answered.";
+  return `${sentences.whether} Asked was only whether (decide): not what or when; at the start counts, too.`;
+}
+
+/** A contact in a list: "0.5: object 3 (lid)". */
+export function contactInWords(/** @type {import("./data.js").Answer} */ { data, query, object, status, t, lo }) {
+  const name = data.called(data.queries.scene[query], object);
+  return status === "undecided" ? `not before ${inDigits(lo)}, if at all: ${name}` : `${inDigits(t)}: ${name}`;
 }
 
 /** All that is known of an answer, in sentences. */
@@ -55,6 +76,11 @@ export function inWords(/** @type {import("./data.js").Answer} */ answer) {
     lines.push(`Crosses ${listed(data, scene, left)} where it starts; left out of the answer (skip_overlapping, pink glass).`);
   }
   lines.push(answerInWords(answer));
+  if (answer.leaves) {
+    lines.push(answer.clearance > 0
+      ? `What blocks it comes within ${precisely(answer.clearance)}, and nearer than it starts (ignore_leaving).`
+      : "It may leave what it rests on, or slide along it (ignore_leaving).");
+  }
   if (gap > 0) lines.push(`The gap is then ${precisely(gap)} long (drawn).`);
   if (data.reasons[query]) lines.push(data.reasons[query]);
   if (lo < hi && Number.isFinite(lo) && !answer.saysOnlyWhether && answer.status !== "undecided") {
@@ -72,6 +98,7 @@ export function inWords(/** @type {import("./data.js").Answer} */ answer) {
   lines.push(sizeInWords("Sensor", data.sensors.meshOf(query)));
   const ignored = data.queries.ignored[query];
   if (ignored) lines.push(`Takes no account of ${listed(data, scene, ignored)} (like glass).`);
+  if (data.queries.asked[query]) lines.push(`Options: ${askedInWords(answer)}.`);
   return lines;
 }
 

@@ -33,18 +33,23 @@ TEST_CASE("a page is the same whether its answers are found, or read as lines or
                queryFile(query("up", R"("motion": [0, 0, 10])") + "," + query("down", R"("motion": [0, 0, -1])") + "," +
                          query("any", R"("motion": [0, 0, 9], "decide": true)") + "," +
                          query("near", R"("dir": [0, 0, 1], "D": 8, "clearance": 0.5)")));
-  // Records cannot list what overlaps.
+  // Records cannot list contacts, or what overlaps.
+  std::string several = queryFile(query("all", R"("dir": [0, 0, 1], "D": 8, "hits": "all", "ignore_leaving": true)") +
+                                  "," + query("near", R"("dir": [0, 0, 1], "D": 8, "hits": 2, "clearance": 0.5)"));
+  several.insert(several.find("], \"queries\"") - 2, ", [0, 1,0,0,0, 0,1,0,0, 0,0,1,7]");
+  folder.write("several.json", several);
   folder.write("left.json", queryFile(query("free", R"("dir": [0, 0, 1], "D": 8, "skip_overlapping": true)") + "," +
                                       R"({"id": "left out", "scene": 0, "sensor": [0, 1,0,0,1, 0,0,-1,1, 0,1,0,3],
                                           "dir": [0, 0, 1], "D": 8, "skip_overlapping": true})"));
   REQUIRE(runProgram(folder, "workload soup --objects 40 --sensors 50 --out soup").status == 0);
   REQUIRE(runProgram(folder, "workload figure7 --teapots 3 --boxes 40 --steps 2 --out flight").status == 0);
-  for (const std::string file : {"flight/queries.json", "soup/queries.json", "steps.json", "left.json"}) {
+  for (const std::string file :
+       {"flight/queries.json", "soup/queries.json", "steps.json", "several.json", "left.json"}) {
     CAPTURE(file);
     REQUIRE(runProgram(folder, "view " + file + " --mode reference --out found.html").status == 0);
     for (const std::string answers : {"answers.jsonl", "answers.npy"}) {
       CAPTURE(answers);
-      if (file == "left.json" && answers == "answers.npy") continue;
+      if ((file == "left.json" || file == "several.json") && answers == "answers.npy") continue;
       REQUIRE(runProgram(folder, "query " + file + " --mode reference --out " + answers).status == 0);
       const Run run = runProgram(folder, "view " + file + " " + answers + " --out read.html");
       INFO(run.err);
@@ -52,7 +57,9 @@ TEST_CASE("a page is the same whether its answers are found, or read as lines or
       CHECK(folder.read("read.html") == folder.read("found.html"));
     }
   }
-  CHECK(pageData(folder.read("found.html"))["left"] == nlohmann::json::parse(R"({"1": [0]})"));
+  const auto found = pageData(folder.read("found.html"));
+  CHECK(found["queries"]["asked"]["0"] == nlohmann::json({{"skip_overlapping", true}}));
+  CHECK(found["left"] == nlohmann::json::parse(R"({"1": [0]})"));
   REQUIRE(runProgram(folder, "view flight/queries.json --mode reference --out found.html --title Flight").status == 0);
   const auto data = pageData(folder.read("found.html"));
   CHECK(data["title"] == "Flight");
@@ -104,6 +111,7 @@ TEST_CASE("answers that are not those of the queries are refused") {
   folder.write("point.jsonl", changed("\"point\": [", "\"point\": [0, "));
   folder.write("text.jsonl", changed("\"t\": 5", "\"t\": \"5\""));
   folder.write("cut.jsonl", good.substr(0, good.size() - 9));
+  folder.write("list.jsonl", changed("\"point\": [", "\"hits\": [{\"object\": 0}, {\"object\": null}], \"point\": ["));
   folder.write("other.npy", "what is no array\n");
   for (const auto& [answers, words] :
        {std::pair{"short.jsonl", "short.jsonl: expected 2 answers, one for each query, got 1"},
@@ -113,6 +121,7 @@ TEST_CASE("answers that are not those of the queries are refused") {
         std::pair{"object.jsonl", "object.jsonl: line 1: object: expected a whole number below 1"},
         std::pair{"triangle.jsonl", "triangle.jsonl: line 1: tri_a: expected a whole number below 1"},
         std::pair{"point.jsonl", "point.jsonl: line 1: point: expected three numbers"},
+        std::pair{"list.jsonl", "list.jsonl: line 1: hits[1].object: expected a whole number that names one of the 1"},
         std::pair{"text.jsonl", "text.jsonl: line 1: t: expected a finite number"},
         std::pair{"cut.jsonl", "cut.jsonl: line 2"}, std::pair{"other.npy", "other.npy: "},
         std::pair{"part.npy", "part.npy: expected an array"}, std::pair{"none.jsonl", "none.jsonl: expected"}}) {

@@ -25,6 +25,20 @@ TEST_CASE("meshes that are too much for a page are boxes of the same size, with 
   CHECK(data["meshes"][1]["indices"]["u4"].get<std::string>().size() == 4 * 12 * 3 * 4 / 3);
 }
 
+TEST_CASE("a page shows the lists of the first queries, and keeps the objects in them") {
+  Workload workload = makeWorkload(Figure7{.teapots = 3, .boxes = 100'010, .steps = 1});
+  const std::vector<Result> answers(workload.queries.size(), Result(Status::clear));
+  std::vector<Result> contacts(60'000, Result(Status::hit));
+  for (uint32_t i = 0; i < contacts.size(); ++i) contacts[i].object = 100'009;
+  PageContent content;
+  for (const uint32_t query : {0u, 2u}) content.hits[query] = contacts;
+  const nlohmann::json data = test::pageData(pageOf(workload, answers, content));
+  CHECK(data["hits"]["first"] == nlohmann::json({{"u4", "AAAAAGDqAABg6gAAYOoAAA=="}}));  // 0, and three times 60,000
+  CHECK(data["notes"][0] == "Lists of contacts are those of the first 2 queries.");
+  const std::string numbers = data["scenes"][0]["number"]["u4"];
+  CHECK(numbers.ends_with("qYYBAA=="));  // 100,009
+}
+
 TEST_CASE("a page keeps what is touched, also in the base of a scene, and leaves out scenes without queries") {
   Workload workload = makeWorkload(Figure7{.teapots = 3, .boxes = 100'010, .steps = 3});
   workload.queries.erase(workload.queries.begin() + 3, workload.queries.end());

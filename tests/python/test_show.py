@@ -54,11 +54,10 @@ def test_a_page_knows_what_was_asked_and_left_out(tmp_path):
     casts = scene.cast(cube, starts, [20.0, 0, 0], skip_overlapping=True, clearance=0.25)
     shown = page_data(casts.show(tmp_path / "page.html"))
     assert shown["left"] == {"1": [0]}
-    assert numbers(shown["queries"]["clearance"]).tolist() == [0.25, 0.25]
-    assert numbers(shown["queries"]["any"]).tolist() == [0, 0]
+    assert shown["queries"]["asked"] == {"0": {"clearance": 0.25}, "1": {"clearance": 0.25}}
     assert page_data(casts[1:].show(tmp_path / "part.html"))["left"] == {"0": [0]}
     whether = page_data(scene.cast(cube, starts, [20.0, 0, 0], any_hit=True).show(tmp_path / "any.html"))
-    assert numbers(whether["queries"]["any"]).tolist() == [1, 1] and whether["left"] == {}
+    assert whether["queries"]["asked"] == {"0": {"decide": True}, "1": {"decide": True}} and whether["left"] == {}
 
 
 def test_what_is_far_from_the_origin_is_shown_where_it_is(tmp_path):

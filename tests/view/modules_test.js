@@ -14,9 +14,9 @@ const NONE = 0xffffffff, TYPES = { u1: Uint8Array, u4: Uint32Array, f4: Float32A
 const array = (type, values) => ({ [type]: Buffer.from(new TYPES[type](values).buffer).toString("base64") });
 const UNIT = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
-function poses(places) {
-  return { mesh: array("u4", places.map(() => 0)), linear: array("f4", places.flatMap(() => UNIT)), at: array("f8", places.flat()) };
-}
+const poses = (places) =>
+  ({ mesh: array("u4", places.map(() => 0)), linear: array("f4", places.flatMap(() => UNIT)), at: array("f8", places.flat()) });
+
 function answersOf(rows) {
   const of = (type, name, none) => array(type, rows.flatMap((row) => row[name] ?? none));
   const numbers = Object.fromEntries(["t", "lo", "hi", "gap"].map((name) => [name, of("f8", name, NaN)]));
@@ -88,7 +88,9 @@ test("colours by t look at each time once", () => {
 });
 
 test("a list is filtered by kind, id and object, and sorted by a column, numbers that are none last", () => {
-  const rows = [{ ...HIT, id: "Ab" }, { ...CLEAR, id: "b" }, { ...HIT, id: "ba", t: 1, object: 1 }, { status: "invalid", id: "c" }];
+  const rows = [
+    { ...HIT, id: "Ab" }, { ...CLEAR, id: "b" }, { ...HIT, id: "ba", t: 1, object: 1 }, { status: "invalid", id: "c" },
+  ];
   const listing = new Listing(dataOf(rows));
   const after = (change) => (change(), listing.rows);
   assert.deepEqual(listing.rows, [0, 1, 2, 3]);
@@ -153,7 +155,8 @@ test("buffers of meshes that another scene has not are freed", () => {
 });
 
 test("contacts that a query lists are answers of their own, and filters find their objects", () => {
-  const hits = [HIT, { ...HIT, t: 6, lo: 6, hi: 6, object: 2 }, { status: "undecided", t: Infinity, lo: 8, hi: Infinity, object: 1 }];
+  const maybe = { status: "undecided", t: Infinity, lo: 8, hi: Infinity, object: 1 };
+  const hits = [HIT, { ...HIT, t: 6, lo: 6, hi: 6, object: 2 }, maybe];
   const data = dataOf([{ ...HIT, hits: [HIT] }, { ...HIT, hits }, CLEAR]), [one, several] = data.answers, look = new Look(data);
   assert.deepEqual(one.contacts, []);
   assert.deepEqual(several.contacts.map(contactInWords),
@@ -169,7 +172,8 @@ test("contacts that a query lists are answers of their own, and filters find the
 
 test("words say what was asked: to touch, to come near, or to block", () => {
   const answers = [
-    HIT, CLEAR, { status: "overlap", t: 0, lo: 0, hi: 0, object: 1, gap: 0.25 }, { status: "undecided", t: Infinity, lo: 4, hi: Infinity },
+    HIT, CLEAR, { status: "overlap", t: 0, lo: 0, hi: 0, object: 1, gap: 0.25 },
+    { status: "undecided", t: Infinity, lo: 4, hi: Infinity },
     { status: "hit", t: 10, lo: 0, hi: 10, decide: true },
   ];
   const said = (asked) => dataOf(answers.map(({ decide, ...answer }) =>
@@ -187,12 +191,17 @@ test("words say what was asked: to touch, to come near, or to block", () => {
   ]);
   const blocked = said({ ignore_leaving: true });
   assert.deepEqual(first(blocked), [
-    "Free for 3, then object 0 (cube) blocks it.", "Nothing blocks it within 10.", "It is blocked where it starts, by object 1 (lid).",
-    "Free for 4; after that, something may block it.", "Something blocks it within 10",
+    "Free for 3, then object 0 (cube) blocks it.", "Nothing blocks it within 10.",
+    "It is blocked where it starts, by object 1 (lid).", "Free for 4; after that, something may block it.",
+    "Something blocks it within 10",
   ]);
   assert.equal(blocked[0][1], "It may leave what it rests on, or slide along it (ignore_leaving).");
   assert.equal(said({ ignore_leaving: true, clearance: 0.5 })[1][1],
     "What blocks it comes within 0.5, and nearer than it starts (ignore_leaving).");
+  const [words] = dataOf([{ ...CLEAR, left: [1], ignored: [0, 2] }]).answers.map((answer) => inWords(answer));
+  assert.match(words[0], /^Crosses object 1 \(lid\) where it starts; left out/);
+  assert.equal(words[1], "Touches nothing else within 10.");
+  assert.equal(words.at(-1), "Takes no account of object 0 (cube), object 2 (cube) (like glass).");
   // With a gap, nothing touches; "contact" is no word for it.
   for (const line of near.flatMap((lines, i) => (answers[i].gap === 0 ? [] : lines))) assert.doesNotMatch(line, /touch|meet|contact/i);
 });

@@ -4,8 +4,8 @@ import { plus, times } from "./vectors.js";
 
 export const COLOURS = {
   hit: [0.9, 0.42, 0.05], clear: [0.1, 0.6, 0.47], overlap: [0.85, 0.13, 0.5], undecided: [0.85, 0.65, 0],
-  invalid: [0.35, 0.35, 0.35], object: [0.68, 0.72, 0.78], touched: [0.32, 0.55, 0.86], listed: [0.5, 0.72, 0.86], triangle: [1, 0.9, 0.1],
-  normal: [0.05, 0.2, 0.75], gap: [0.75, 0.1, 0.1], path: [0.15, 0.15, 0.2],
+  invalid: [0.35, 0.35, 0.35], object: [0.68, 0.72, 0.78], touched: [0.32, 0.55, 0.86], listed: [0.5, 0.72, 0.86],
+  triangle: [1, 0.9, 0.1], normal: [0.05, 0.2, 0.75], gap: [0.75, 0.1, 0.1], path: [0.15, 0.15, 0.2],
 };
 COLOURS.part = COLOURS.overlap;
 export const SYMBOLS = { hit: "●", clear: "○", part: "○", overlap: "✕", undecided: "◆", invalid: "–" };

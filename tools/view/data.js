@@ -109,8 +109,9 @@ export class Answer {
   }
   /** The first contacts with the nearest objects, if the query lists several. @returns {Answer[]} */
   get contacts() {
-    const { data: { hits }, data, query } = this, begin = hits.first[query], count = hits.first[query + 1] - begin;
-    return (this.list ??= count < 2 ? [] : Array.from({ length: count }, (_, i) => new Answer(data, query, hits, begin + i, true)));
+    const { data, query } = this, { hits } = data, begin = hits.first[query], count = hits.first[query + 1] - begin;
+    const contact = (_, i) => new Answer(data, query, hits, begin + i, true);
+    return (this.list ??= count < 2 ? [] : Array.from({ length: count }, contact));
   }
   /** The object touched, by this answer or by another mode's. */
   get touched() {

@@ -15,8 +15,9 @@ export const the = (tag, id) => document.querySelector(`${tag}#${id}`);
  * @param {Element} parent
  * @param {Tag} tag
  */
-export function made(parent, tag, className = "", text = "") {
+export function made(parent, tag, className = "", text = "", role = "") {
   const element = document.createElement(tag);
+  if (role) element.setAttribute("role", role);
   element.className = className;
   element.textContent = text;
   parent.append(element);

@@ -5,6 +5,8 @@ import { frameOf } from "./scopes.js";
 import { between, cross, lengthOf, minus, plus, times, unit } from "./vectors.js";
 import { inDigits } from "./words.js";
 
+/** @typedef {import("./data.js").Answer} Answer */
+
 // Of contacts in a list.
 const MOST_LABELS = 20;
 
@@ -120,7 +122,7 @@ export class Look {
   }
 
   /** The chosen query: where its sensor starts, its bracket, what it touches. */
-  explain(stage, /** @type {import("./data.js").Answer} */ answer) {
+  explain(stage, /** @type {Answer} */ answer) {
     const { data, chosen } = this, { sensors } = data, way = data.way(chosen);
     const { share, saysOnlyWhether: whether, otherShare: other } = answer, start = sensors.centreOf(chosen);
     if (share > 0) stage.glass(sensors, chosen, [0, 0, 0], COLOURS[answer.kind], true);
@@ -146,7 +148,7 @@ export class Look {
     }
   }
 
-  explainContact(stage, /** @type {import("./data.js").Answer} */ { object: number, triA, triB, share, point, hasPoint, normal, hasNormal, gap }) {
+  explainContact(stage, /** @type {Answer} */ { object: number, triA, triB, share, point, hasPoint, normal, hasNormal, gap }) {
     const { data, chosen } = this, { sensors } = data, { objects, place: places, ways } = data.scene(this.scene);
     const object = places.get(number);
     if (object === undefined) return;

@@ -6,7 +6,8 @@ import { askedInWords, inDigits, kindInWords } from "./words.js";
 
 /**
  * @typedef {import("./data.js").Answer} Answer
- * @typedef {{name: string, isNumber?: boolean, value: (answer: Answer) => number | string, text: (answer: Answer) => string}} Column
+ * @typedef {{name: string, isNumber?: boolean, value: (answer: Answer) => number | string,
+ *   text: (answer: Answer) => string}} Column
  */
 
 /** @type {Column[]} `value` sorts. */
@@ -24,8 +25,9 @@ export const COLUMNS = [
   {
     name: "object", isNumber: true, value: ({ object }) => object,
     text: ({ data, query, object, contacts }) => {
-      const name = object === data.none ? "" : data.nameOf(data.queries.scene[query], object);
-      return object === data.none ? "" : `${object}${name ? ` (${name})` : ""}${contacts.length ? ` + ${contacts.length - 1}` : ""}`;
+      if (object === data.none) return "";
+      const name = data.nameOf(data.queries.scene[query], object), others = contacts.length - 1;
+      return `${object}${name ? ` (${name})` : ""}${others > 0 ? ` + ${others}` : ""}`;
     },
   },
   { name: "asked", value: askedInWords, text: askedInWords },
@@ -97,12 +99,10 @@ export class Table {
     this.makeChips(filters);
     this.id = this.field(filters, "id", "part of an id", "7.5em");
     this.object = this.field(filters, "object", "object", "4.5em");
-    this.scroller = made(place, "div", "scroller");
-    this.scroller.tabIndex = 0;
-    for (const [name, value] of [["role", "grid"], ["aria-label", "Queries and their answers"]]) this.scroller.setAttribute(name, value);
+    this.scroller = made(place, "div", "scroller", "", "grid");
+    Object.assign(this.scroller, { tabIndex: 0, ariaLabel: "Queries and their answers" });
     this.heads = this.makeHeads();
-    this.room = made(this.scroller, "div", "room");
-    this.room.setAttribute("role", "rowgroup");
+    this.room = made(this.scroller, "div", "room", "", "rowgroup");
     this.scroller.onscroll = () => this.draw();
     this.scroller.onkeydown = (event) => this.page(event);
     new ResizeObserver(() => this.draw()).observe(this.scroller);
@@ -124,18 +124,18 @@ export class Table {
   }
   field(place, name, hint, width) {
     const input = made(place, "input");
-    Object.assign(input, { placeholder: hint, ariaLabel: `Filter by ${hint}`, oninput: () => this.filter({ [name]: input.value }) });
+    Object.assign(input, { placeholder: hint, ariaLabel: `Filter by ${hint}` });
+    input.oninput = () => this.filter({ [name]: input.value });
     input.style.width = width;
     return input;
   }
   makeHeads() {
     // Within what scrolls, so that a scrollbar moves them as it moves the columns.
-    const row = made(this.scroller, "div", "row heads");
-    row.setAttribute("role", "row");
+    const row = made(this.scroller, "div", "row heads", "", "row");
     row.ariaRowIndex = "1";
     return this.columns.map((column) => {
-      const cell = made(row, "span", column.isNumber ? "number" : ""), head = made(cell, "button", "", column.name);
-      cell.setAttribute("role", "columnheader");
+      const cell = made(row, "span", column.isNumber ? "number" : "", "", "columnheader");
+      const head = made(cell, "button", "", column.name);
       head.title = `Sort by ${column.name}`;
       head.onclick = () => {
         this.listing.sort(column);
@@ -191,17 +191,13 @@ export class Table {
     else scroller.removeAttribute("aria-activedescendant");
   }
   drawRow(/** @type {Answer} */ answer, /** @type {number} */ place) {
-    const { query, kind } = answer, row = made(this.room, "div", `row ${query === this.chosen ? "chosen" : ""}`);
-    row.id = `row${query}`;
-    row.setAttribute("role", "row");
-    row.ariaRowIndex = `${place + 2}`;
-    row.ariaSelected = `${query === this.chosen}`;
+    const { query, kind } = answer, row = made(this.room, "div", "row", "", "row");
+    Object.assign(row, { id: `row${query}`, ariaRowIndex: `${place + 2}`, ariaSelected: `${query === this.chosen}` });
     row.style.top = `${place * ROW_HEIGHT}px`;
     row.onclick = () => this.choose(query);
     this.columns.forEach((column, k) => {
-      const text = column.text(answer), cell = made(row, "span", k === 0 ? kind : column.isNumber ? "number" : "", text);
-      cell.setAttribute("role", "gridcell");
-      cell.title = text;
+      const text = column.text(answer), name = k === 0 ? kind : column.isNumber ? "number" : "";
+      made(row, "span", name, text, "gridcell").title = text;
     });
   }
 }

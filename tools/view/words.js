@@ -1,5 +1,7 @@
 // Answers in words: what was asked decides how they are said.
 
+/** @typedef {import("./data.js").Answer} Answer */
+
 export const inDigits = (value, digits = 6) => {
   if (Number.isNaN(value)) return "";
   if (!Number.isFinite(value)) return "∞";
@@ -49,7 +51,7 @@ function sentencesOf({ leaves, clearance, gap }, { what, time, within, other }) 
 }
 
 /** The answer itself, in a sentence or two. */
-function answerInWords(/** @type {import("./data.js").Answer} */ answer) {
+function answerInWords(/** @type {Answer} */ answer) {
   const { data, query, object, status } = answer, { queries } = data, step = queries.step[query];
   const time = precisely(status === "undecided" ? answer.lo : answer.t);
   const sentences = sentencesOf(answer, {
@@ -63,13 +65,13 @@ function answerInWords(/** @type {import("./data.js").Answer} */ answer) {
 }
 
 /** A contact in a list: "0.5: object 3 (lid)". */
-export function contactInWords(/** @type {import("./data.js").Answer} */ { data, query, object, status, t, lo }) {
+export function contactInWords(/** @type {Answer} */ { data, query, object, status, t, lo }) {
   const name = data.called(data.queries.scene[query], object);
   return status === "undecided" ? `not before ${inDigits(lo)}, if at all: ${name}` : `${inDigits(t)}: ${name}`;
 }
 
 /** All that is known of an answer, in sentences. */
-export function inWords(/** @type {import("./data.js").Answer} */ answer) {
+export function inWords(/** @type {Answer} */ answer) {
   const { data, query, lo, hi, triA, triB, gap } = answer, scene = data.queries.scene[query], lines = [];
   const left = data.left[query], hasGap = gap !== 0;
   if (left) {
@@ -106,5 +108,5 @@ const KINDS_IN_WORDS = { part: "clear, some left out" };
 export const kindInWords = (kind) => KINDS_IN_WORDS[kind] ?? kind;
 
 /** The options that a query gives, in the words of query files: "clearance 0.5, hits all". */
-export const askedInWords = (/** @type {import("./data.js").Answer} */ { data, query }) =>
+export const askedInWords = (/** @type {Answer} */ { data, query }) =>
   Object.entries(data.queries.asked[query] ?? {}).map(([name, value]) => (value === true ? name : `${name} ${value}`)).join(", ");

@@ -67,6 +67,7 @@ test("an answer says how far its sensor goes, and when it touches something", ()
   assert.deepEqual(data.answers.map(({ time }) => time), [3, NaN, NaN, 0, NaN, NaN, NaN, 0.5]);
   assert.equal(data.latest, 3);
   assert.deepEqual([data.answers[0].hasPoint, data.answers[1].hasPoint], [true, false]);
+  assert.deepEqual([data.answers[0].point, data.answers[0].normal], [HIT.point, HIT.normal]);
 });
 
 test("another mode's answer names what is touched where the page's own names nothing", () => {

@@ -283,6 +283,22 @@ def test_two_fingers_zoom(view):
     assert view.run("return [view.camera.distance, view.look.chosen]") == [pytest.approx(before / 2), chosen]
 
 
+def test_only_the_picture_keeps_a_context(browser, tmp_path):
+    page = make_page(tmp_path, QUERIES[:1])
+    record = """
+        const getContext = HTMLCanvasElement.prototype.getContext;
+        window.contexts = [];
+        HTMLCanvasElement.prototype.getContext = function (type, ...more) {
+          const context = getContext.call(this, type, ...more);
+          if (type === "webgl2") contexts.push(context);
+          return context;
+        };"""
+    script = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": record})
+    view = View(browser, page)
+    browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+    assert view.run("return contexts.map((context) => context.isContextLost())") == [True, False]
+
+
 def test_a_lost_context_returns(view):
     view.choose(1)
     view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
@@ -359,6 +375,7 @@ def test_objects_move_and_deform_and_steps_have_scenes_of_their_own(browser, tmp
     view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
     assert view.rows()[1][2] == "2"
     assert is_like(view.colour_at((2.5, 37, 2.5)), "touched")  # three times as large
+    assert not view.run("return view.renderer.meshBuffers.has(view.data.meshes[0])")  # of the other scene
     assert view.errors() == []
 
 

@@ -508,4 +508,9 @@ def test_heads_stand_over_their_columns_beside_a_scrollbar(browser, tmp_path):
         "return ['.heads', '.room .row'].map((row) => [...document.querySelector(row).children].map((c) => c.getBoundingClientRect().right))"
     )
     assert ends[0] == pytest.approx(ends[1], abs=0.6)
+    # The row of what is chosen is in sight, whatever room the words about it take.
+    view.run("view.choose(-1); view.table.scroller.scrollTop = 0; view.choose(Math.floor(view.table.scroller.clientHeight / 24) - 3)")
+    places = ["[aria-selected=true]", ".scroller"]
+    row, table = view.run("return arguments[0].map((place) => document.querySelector(place).getBoundingClientRect().bottom)", places)
+    assert row <= table
     assert view.errors() == []

@@ -63,8 +63,9 @@ class Page {
   choose(query, { fly = false } = {}) {
     if (query === undefined) return;
     this.change({ chosen: query, contact: -1, object: -1, scene: query < 0 ? this.look.scene : this.data.queries.scene[query] });
-    this.table.mark(query);
+    // The words leave the table less room, in which the row is to be seen.
     this.describe();
+    this.table.mark(query);
     if (fly && query >= 0) this.flyTo(query);
   }
 
@@ -210,20 +211,20 @@ class Page {
     head.title = kindInWords(kind);
     for (const line of inWords(look.answer)) made(place, "p", "", line);
     const { contacts } = data.answers[query];
-    if (contacts.length) made(place, "p", "", "First contacts, one with each object:");
-    this.describeContacts(made(place, "ol"), contacts);
+    if (contacts.length) this.describeContacts(place, contacts);
     if (data.scopes[query]) drawScopes(place, data.scopes[query]);
   }
   /** Buttons that show the contacts that a query lists. */
-  describeContacts(list, contacts) {
-    const shown = this.look.answer.object;
+  describeContacts(place, contacts) {
+    made(place, "p", "", "First contacts, one with each object:");
+    const list = made(place, "ol"), shown = this.look.answer.object;
     contacts.forEach((contact, i) => {
       const button = made(made(list, "li"), "button", contact.status, contactInWords(contact));
       button.ariaPressed = `${contact.object === shown}`;
       button.onclick = () => {
         this.change({ contact: i });
         this.describe();
-        the("div", "chosen").querySelectorAll("button")[i].focus();
+        place.querySelectorAll("button")[i].focus();
         this.flyTo(contact.query);
       };
     });

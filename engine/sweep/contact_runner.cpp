@@ -44,9 +44,9 @@ ContactRunner::ContactRunner(const gpu::Owner& owner, const Scene& scene, const 
       scene_(scene),
       options_(options),
       resident_(resident),
-      cpu_(Tier::contact, options.cpuThreads),
       room_(room),
-      mostSearches_(mostSearchesOf(owner)) {
+      mostSearches_(mostSearchesOf(owner)),
+      cpu_(Tier::contact, options.cpuThreads) {
   if (needsProof && !isOnCpu()) requireProof(owner);
 }
 

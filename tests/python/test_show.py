@@ -54,10 +54,28 @@ def test_a_page_knows_what_was_asked_and_left_out(tmp_path):
     casts = scene.cast(cube, starts, [20.0, 0, 0], skip_overlapping=True, clearance=0.25)
     shown = page_data(casts.show(tmp_path / "page.html"))
     assert shown["left"] == {"1": [0]}
-    assert shown["queries"]["asked"] == {"0": {"clearance": 0.25}, "1": {"clearance": 0.25}}
+    asked = {"clearance": 0.25, "skip_overlapping": True}
+    assert shown["queries"]["asked"] == {"0": asked, "1": asked}
     assert page_data(casts[1:].show(tmp_path / "part.html"))["left"] == {"0": [0]}
     whether = page_data(scene.cast(cube, starts, [20.0, 0, 0], any_hit=True).show(tmp_path / "any.html"))
     assert whether["queries"]["asked"] == {"0": {"decide": True}, "1": {"decide": True}} and whether["left"] == {}
+
+
+def test_a_page_has_every_option_and_what_is_listed(tmp_path):
+    scene, cube = row()
+    starts = at([[0, 0, 0], [5.5, 0.5, 0.5], [0, 9, 0]])
+    leaving = np.array([False, True, False])
+    casts = scene.cast(cube, starts, [20.0, 0, 0], ignore_leaving=leaving, slack=1e-9, hits=np.array([2, 0, 1]))
+    shown = page_data(casts.show(tmp_path / "page.html"))
+    assert shown["queries"]["asked"] == {
+        "0": {"slack": 1e-9, "hits": 2},
+        "1": {"ignore_leaving": True, "slack": 1e-9, "hits": "all"},
+        "2": {"slack": 1e-9},
+    }
+    assert numbers(shown["hits"]["object"]).tolist() == casts.hits.object.tolist()
+    np.testing.assert_array_equal(numbers(shown["hits"]["t"]), casts.hits.distance)
+    part = page_data(casts[1:].show(tmp_path / "part.html"))
+    assert numbers(part["hits"]["object"]).tolist() == casts.hits.object[casts.hits.of(1)].tolist()
 
 
 def test_what_is_far_from_the_origin_is_shown_where_it_is(tmp_path):

@@ -191,7 +191,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
 std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
                       const std::string& title, uint64_t count, const std::vector<std::string>& names,
                       const py::dict& arrays, const std::map<uint32_t, std::string>& reasons,
-                      const tools::LeftOut& left) {
+                      const tools::LeftOut& left, const std::optional<std::pair<py::dict, Array<int64_t>>>& hits) {
   const size_t shown = names.size();
   ShownCasts casts{
       .count = count, .names = names, .answers = outputFrom(arrays, shown), .reasons = reasons, .left = left};
@@ -199,8 +199,14 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
   casts.poses = output<double>(arrays, "poses", 16 * shown);
   casts.directions = output<double>(arrays, "displacements", 3 * shown);
   casts.distances = output<double>(arrays, "distances", shown);
-  casts.clearances = output<double>(arrays, "clearance", shown);
-  casts.anyHit = output<uint8_t>(arrays, "any_hit", shown);
+  for (const tools::QueryField& field : tools::queryFields()) {
+    if (*field.python != 0) casts.options.emplace_back(&field, output<double>(arrays, field.python, shown));
+  }
+  if (hits) {
+    requireCount(hits->second, "offsets", shown + 1);
+    casts.hitOffsets = hits->second.data();
+    casts.hits = outputFrom(hits->first, static_cast<size_t>(casts.hitOffsets[shown]));
+  }
   const auto excluded = arrays["exclude_from_each"].cast<Array<int64_t>>();
   casts.excludedCount = static_cast<size_t>(excluded.shape(1));
   casts.excluded = excluded.data();

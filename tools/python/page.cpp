@@ -1,6 +1,7 @@
 #include "python/page.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "view/page.h"
 
@@ -40,13 +41,27 @@ uint32_t idFrom(int64_t number) {
   return number < 0 ? kNone : static_cast<uint32_t>(number);
 }
 
+Result resultOf(const BatchOutput& answers, size_t i) {
+  Result result(static_cast<Status>(answers.status[i]));
+  result.t = answers.distance[i];
+  result.lo = answers.lo[i];
+  result.hi = answers.hi[i];
+  result.object = idFrom(answers.object[i]);
+  result.triA = idFrom(answers.triangles[2 * i]);
+  result.triB = idFrom(answers.triangles[2 * i + 1]);
+  std::copy_n(answers.point + 3 * i, 3, result.point.begin());
+  std::copy_n(answers.normal + 3 * i, 3, result.normal.begin());
+  result.gap = answers.gap[i];
+  return result;
+}
+
 }  // namespace
 
 std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
                    const std::string& title, const ShownCasts& casts) {
   Workload workload = workloadOf(scene.scene(), objectNames);
   std::vector<Result> results;
-  const BatchOutput& answers = casts.answers;
+  tools::PageContent content;
   for (size_t i = 0; i < casts.names.size(); ++i) {
     tools::QuerySpec& query = workload.queries.emplace_back();
     query.id = casts.names[i];
@@ -55,24 +70,20 @@ std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::stri
     query.worldFromMesh = scene.based().placed(query.mesh, query.worldFromMesh);
     std::copy_n(casts.directions + 3 * i, 3, query.direction.begin());
     query.distance = casts.distances[i];
-    query.clearance = casts.clearances[i];
-    query.anyHit = casts.anyHit[i] != 0;
+    for (const auto& [field, values] : casts.options) {
+      const bool isWord = field->word != nullptr && values[i] == 0;
+      tools::setValue(query, *field, isWord ? std::numeric_limits<double>::infinity() : values[i]);
+    }
     for (size_t k = 0; k < casts.excludedCount; ++k) {
       const int64_t object = casts.excluded[casts.excludedCount * i + k];
       if (object >= 0) query.exclude.push_back(idFrom(object));
     }
-    Result& result = results.emplace_back(static_cast<Status>(answers.status[i]));
-    result.t = answers.distance[i];
-    result.lo = answers.lo[i];
-    result.hi = answers.hi[i];
-    result.object = idFrom(answers.object[i]);
-    result.triA = idFrom(answers.triangles[2 * i]);
-    result.triB = idFrom(answers.triangles[2 * i + 1]);
-    std::copy_n(answers.point + 3 * i, 3, result.point.begin());
-    std::copy_n(answers.normal + 3 * i, 3, result.normal.begin());
-    result.gap = answers.gap[i];
+    results.push_back(resultOf(casts.answers, i));
+    if (casts.hitOffsets == nullptr) continue;
+    for (int64_t k = casts.hitOffsets[i]; k < casts.hitOffsets[i + 1]; ++k) {
+      content.hits[static_cast<uint32_t>(i)].push_back(resultOf(casts.hits, static_cast<size_t>(k)));
+    }
   }
-  tools::PageContent content;
   content.title = title;
   content.queries = casts.count;
   content.reasons = casts.reasons;

@@ -3,11 +3,13 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "python/batch.h"
 #include "python/casting_scene.h"
 #include "view/cut.h"
+#include "workloads/query_fields.h"
 
 namespace radar::python {
 
@@ -17,11 +19,13 @@ struct ShownCasts {
   std::vector<std::string> names;
   const uint32_t* meshes = nullptr;
   const double *poses = nullptr, *directions = nullptr, *distances = nullptr;  ///< 16, 3, 1
-  const double* clearances = nullptr;
-  const uint8_t* anyHit = nullptr;    ///< whether only that is known
+  std::vector<std::pair<const tools::QueryField*, const double*>>
+      options;                        ///< values as setValue takes them, but 0: the word
   const int64_t* excluded = nullptr;  ///< `excludedCount` of them
   size_t excludedCount = 0;
   BatchOutput answers{};
+  BatchOutput hits{};                       ///< those of cast i begin at hitOffsets[i] and end before hitOffsets[i + 1]
+  const int64_t* hitOffsets = nullptr;      ///< null: none is listed
   std::map<uint32_t, std::string> reasons;  ///< by cast
   tools::LeftOut left;                      ///< by cast
 };

@@ -55,8 +55,10 @@ class Scene:
         arrays: dict[str, npt.NDArray[Any]],
         reasons: dict[int, str],
         left_out: dict[int, list[int]],
+        hits: tuple[dict[str, npt.NDArray[Any]], _Ids] | None,
     ) -> str:
-        """`count` casts, of which `names` and `arrays`, C-contiguous, are the first: what was asked, and the answers."""
+        """`count` casts, of which `names`, `arrays` and `hits`, C-contiguous, are the first: what was asked, the answers,
+        and the hits' arrays and offsets."""
 
 def first_singular(matrices: _Doubles) -> tuple[int, str] | None: ...
 def float_vertices(vertices: _Doubles, faces: _U32) -> tuple[_Floats, _Doubles, float]:

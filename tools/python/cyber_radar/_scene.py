@@ -338,8 +338,9 @@ class Scene:
         casts.hits = None if listed is None else Hits(**listed[0], offsets=listed[1], of_shape=shape)
         casts.overlapping = None if overlapping is None else Overlapping(*overlapping, shape)
         casts.reasons = reasons
-        for name, of_type in (("clearance", np.float64), ("any_hit", np.uint8)):
-            arguments.setdefault(name, np.broadcast_to(np.asarray(options[name], of_type), shape))
+        for name in _engine.OPTIONS:
+            value = {None: np.nan, "all": 0}.get(options[name], options[name])
+            arguments.setdefault(name, np.broadcast_to(np.asarray(value, np.float64), shape))
         casts._asked = Asked.of(self, arguments, shape)
         return casts
 

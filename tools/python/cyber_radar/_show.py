@@ -81,9 +81,14 @@ def page_of(casts: Casts, asked: Asked | None, title: str) -> str:
         rows, offsets = casts.overlapping.object.tolist(), casts.overlapping.offsets.tolist()
         left_out = {i: rows[offsets[i] : offsets[i + 1]] for i in range(shown) if offsets[i] < offsets[i + 1]}
     reasons = {int(i): reason for reason, found in casts.reasons.items() for i in found if i < shown}
+    arrays |= {name: np.array(arrays[name], np.float64) for name in _engine.OPTIONS}
+    hits = None
+    if casts.hits is not None:
+        offsets = casts.hits.offsets[: shown + 1]
+        hits = ({name: array[: offsets[-1]] for name, array in casts.hits.to_dict().items()}, offsets)
     scene = asked.scene
     with scene._reading() as engine:
-        return engine.page(scene.names, title, casts.status.size, names, arrays, reasons, left_out)
+        return engine.page(scene.names, title, casts.status.size, names, arrays, reasons, left_out, hits)
 
 
 def write(page: str, file: str | os.PathLike[str]) -> pathlib.Path:

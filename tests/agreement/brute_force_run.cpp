@@ -1,8 +1,8 @@
 // The run of hard cases against brute force by command: answers of the CPU, or of a device, and their lists against the
 // definition in exact integers, a table per family. Exit status 1 if anything is wrong.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "command/command.h"
 #include "commit/commit.h"
 #include "radar/cpu_sweeper.h"
 #include "support/answer.h"
@@ -77,7 +77,8 @@ class Asker {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Holds exact answers to hard cases against brute force in exact integers");
+  radar::tools::Program program("radar_brute_force",
+                                "Holds exact answers to hard cases against brute force in exact integers");
   uint64_t queries = 10'000, seed = 1, first = 0;
   bool onDevice = false;
   std::vector<std::string> known, families;
@@ -85,13 +86,12 @@ int main(int argc, char** argv) try {
     known.push_back(family.name);
     if (family.ignoresLeaving) families.push_back(family.name);
   }
-  app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
-  app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
-  app.add_option("--first", first, "Number of each family's first query: to ask one again");
-  app.add_option("--family", families, "Only these; without the option, those of bodies at rest")
-      ->check(CLI::IsMember(known));
-  app.add_flag("--on-device", onDevice, "The answers are those of the device, not of the CPU");
-  CLI11_PARSE(app, argc, argv);
+  program.option("--queries", &queries, "In all, over the families alike");
+  program.option("--seed", &seed, "Another seed, other queries");
+  program.option("--first", &first, "Number of each family's first query: to ask one again");
+  program.option("--family", &families, "Only these; without the option, those of bodies at rest").oneOf(known);
+  program.option("--on-device", &onDevice, "The answers are those of the device, not of the CPU");
+  if (const std::optional<int> ended = program.parse(argc, argv)) return *ended;
 
   std::optional<Device> device;
   if (onDevice) device.emplace(Device::open());

@@ -1,4 +1,4 @@
-// A small share of what radar_random_queries and `cyber-radar stability` ask by the ten thousand.
+// A small share of what radar_random_queries and `radar-lab stability` ask by the ten thousand.
 #include <cmath>
 
 #include "agreement/compare.h"

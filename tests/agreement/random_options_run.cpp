@@ -1,10 +1,10 @@
 // Every pair of options by command: answers to random queries that have both, those of the device and those of the CPU,
 // against brute force over all pairs of triangles, and against simpler queries. Exit status 1 if anything is wrong.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <sstream>
 
 #include "agreement/random_options.h"
+#include "command/command.h"
 #include "commit/commit.h"
 #include "radar/cpu_sweeper.h"
 #include "support/answer.h"
@@ -240,19 +240,21 @@ std::string nameOf(uint32_t options) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Holds the answers to random queries with every two options against brute force and simpler queries");
+  radar::tools::Program program(
+      "radar_random_options",
+      "Holds the answers to random queries with every two options against brute force and simpler queries");
   uint64_t queries = 1'000, seed = 1, first = 0;
   bool onCpu = false, withoutDoubles = false;
   std::vector<std::string> names;
-  app.add_option("--queries", queries, "Of each pair, at least")->capture_default_str();
-  app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
-  app.add_option("--first", first, "Number of each pair's first scene: to ask one again");
-  app.add_option("--pair", names, "Only pairs with these options; three and more: all together")
-      ->delimiter(',')
-      ->check(CLI::IsMember(std::vector<std::string>(kOptionNames.begin(), kOptionNames.end())));
-  app.add_flag("--cpu", onCpu, "Without a device");
-  app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
-  CLI11_PARSE(app, argc, argv);
+  program.option("--queries", &queries, "Of each pair, at least");
+  program.option("--seed", &seed, "Another seed, other queries");
+  program.option("--first", &first, "Number of each pair's first scene: to ask one again");
+  program.option("--pair", &names, "Only pairs with these options; three and more: all together")
+      .list()
+      .oneOf(std::vector<std::string>(kOptionNames.begin(), kOptionNames.end()));
+  program.option("--cpu", &onCpu, "Without a device");
+  program.option("--without-doubles", &withoutDoubles, "As on a device that has none");
+  if (const std::optional<int> ended = program.parse(argc, argv)) return *ended;
 
   std::optional<Device> device;
   if (!onCpu) device.emplace(Device::open({.doubles = !withoutDoubles}));

@@ -1,10 +1,10 @@
 // The run of seeded random queries by command: the search on the device against the CPU's, a table per family. Exit
 // status 1 if anything is wrong.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 
 #include "agreement/real_meshes.h"
+#include "command/command.h"
 #include "commit/commit.h"
 #include "gpu/device.h"
 
@@ -34,7 +34,8 @@ void print(const std::string& family, const Tally& t) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
+  radar::tools::Program program("radar_random_queries",
+                                "Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
   bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false, allHits = false, clearances = false,
@@ -42,18 +43,18 @@ int main(int argc, char** argv) try {
   const radar::tools::MeshFamilies meshes = radar::test::realMeshes();
   const std::vector<std::string> known = radar::tools::runFamilies(meshes);
   std::vector<std::string> families;
-  app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
-  app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
-  app.add_option("--first", first, "Number of each family's first query: to ask one again");
-  app.add_option("--family", families, "Only these")->check(CLI::IsMember(known));
-  app.add_option("--device", index, "As `cyber-radar devices` numbers them");
-  app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
-  app.add_flag("--composed-division", composedDivision, "As on a device whose division of doubles is not right");
-  app.add_flag("--ignore-leaving", ignoreLeaving, "Every query counts only pairs of triangles that block");
-  app.add_flag("--all-hits", allHits, "Every query lists the contacts with all objects");
-  app.add_flag("--clearances", clearances, "Every query has a clearance, of its own size");
-  app.add_flag("--steps", steps, "Objects move, too");
-  CLI11_PARSE(app, argc, argv);
+  program.option("--queries", &queries, "In all, over the families alike");
+  program.option("--seed", &seed, "Another seed, other queries");
+  program.option("--first", &first, "Number of each family's first query: to ask one again");
+  program.option("--family", &families, "Only these").oneOf(known);
+  program.option("--device", &index, "As `cyber-radar devices` numbers them");
+  program.option("--without-doubles", &withoutDoubles, "As on a device that has none");
+  program.option("--composed-division", &composedDivision, "As on a device whose division of doubles is not right");
+  program.option("--ignore-leaving", &ignoreLeaving, "Every query counts only pairs of triangles that block");
+  program.option("--all-hits", &allHits, "Every query lists the contacts with all objects");
+  program.option("--clearances", &clearances, "Every query has a clearance, of its own size");
+  program.option("--steps", &steps, "Objects move, too");
+  if (const std::optional<int> ended = program.parse(argc, argv)) return *ended;
   if (families.empty()) families = known;
 
   const radar::Device device = radar::Device::open({.index = index, .doubles = !withoutDoubles});

@@ -85,9 +85,7 @@ TEST_CASE("commands that draw or measure name the file for which there is no roo
       {kScopes + "--raw --out d", "d/R.f32"},
       {"demo --out d", "d/table.txt"},
       {"selftest --minutes 0.1 --device 0 --out d", "d/report.json"},
-      {"stability --cases 24 --resolution 16 --out d", "d/table.csv"},
       {kScale + "--out d", "d/scale.csv"},
-      {"chart --extent least --out d", "d/report.json"},
   }));
   const ScratchFolder folder;
   makeQueries(folder);
@@ -139,8 +137,7 @@ TEST_CASE("a folder that takes no files is refused by name, whoever asks") {
     for (const std::string& arguments : std::vector<std::string>{
              kQuery + "--out " + out, kQuery + "--out " + out + ".npy", kQuery + "--stats " + out,
              "workload table1 --boxes 5 --out " + out, "workload table1 --boxes 5 --binary --out " + out,
-             kScopes + "--out " + out, "stability --cases 24 --out " + out, "scale --boxes 20 --out " + out,
-             "demo --out " + out, "selftest --out " + out, "chart --extent least --out " + out}) {
+             kScopes + "--out " + out, "scale --boxes 20 --out " + out, "demo --out " + out, "selftest --out " + out}) {
       CAPTURE(arguments);
       const Run run = runProgram(folder, arguments);
       CHECK(run.status == 2);

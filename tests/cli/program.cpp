@@ -21,13 +21,18 @@ Run runProgram(const ScratchFolder& folder, const std::string& arguments, const 
   return runCommand(folder, environment + " '" RADAR_PROGRAM "' " + arguments);
 }
 
-void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words) {
+Run runLab(const ScratchFolder& folder, const std::string& arguments, const std::string& environment) {
+  return runCommand(folder, environment + " '" RADAR_LAB "' " + arguments);
+}
+
+void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words,
+                  decltype(runProgram)& run) {
   CAPTURE(arguments);
   const std::string before = folder.list();
-  const Run run = runProgram(folder, arguments);
-  CHECK(run.status == 2);
-  CHECK(run.out.empty());
-  CHECK_THAT(run.err, Contains(words));
+  const Run refused = run(folder, arguments, "");
+  CHECK(refused.status == 2);
+  CHECK(refused.out.empty());
+  CHECK_THAT(refused.err, Contains(words));
   CHECK(folder.list() == before);
 }
 

@@ -18,8 +18,12 @@ Run runCommand(const ScratchFolder& folder, const std::string& command);
 /// Runs `cyber-radar arguments` in `folder`. `environment` precedes the command: "NAME=value".
 Run runProgram(const ScratchFolder& folder, const std::string& arguments, const std::string& environment = "");
 
-/// Checks that `cyber-radar arguments` ends with status 2, prints nothing but an error that contains `words`, and
-/// neither makes nor removes a file in `folder`.
-void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words);
+/// The same with radar-lab.
+Run runLab(const ScratchFolder& folder, const std::string& arguments, const std::string& environment = "");
+
+/// Checks that `cyber-radar arguments`, or what `run` runs, ends with status 2, prints nothing but an error that
+/// contains `words`, and neither makes nor removes a file in `folder`.
+void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words,
+                  decltype(runProgram)& run = runProgram);
 
 }  // namespace radar::test

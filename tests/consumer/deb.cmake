@@ -18,8 +18,7 @@ endforeach()
 execute_process(COMMAND dpkg-deb -c ${deb} OUTPUT_VARIABLE contents COMMAND_ERROR_IS_FATAL ANY)
 foreach(file bin/cyber-radar include/radar/radar.h lib/libcyber-radar.a lib/cmake/CyberRadar/CyberRadarConfig.cmake
         lib/pkgconfig/cyber-radar.pc share/doc/cyber-radar/copyright share/man/man1/cyber-radar.1
-        share/bash-completion/completions/cyber-radar share/zsh/vendor-completions/_cyber-radar
-        share/fish/vendor_completions.d/cyber-radar.fish)
+        share/bash-completion/completions/cyber-radar share/zsh/vendor-completions/_cyber-radar)
   string(FIND "${contents}" " ./usr/${file}\n" at)
   if(at EQUAL -1)
     message(FATAL_ERROR "expected /usr/${file} in ${deb}:\n${contents}")

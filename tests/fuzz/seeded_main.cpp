@@ -1,11 +1,11 @@
 // A target as a program without libFuzzer: runs the seeds, then a fixed number of random mutations of them, or the
 // given files. Exit status 1 if an input fails or a validation layer has a message.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "command/command.h"
 #include "fuzz/target.h"
 #include "workloads/random.h"
 
@@ -58,15 +58,15 @@ bool passes(const std::string& input, const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Runs a fuzz target on seeds, on random mutations of them, or on files");
+  radar::tools::Program program("fuzz", "Runs a fuzz target on seeds, on random mutations of them, or on files");
   uint64_t runs = 1000, first = 0;
   bool names = false;
   std::vector<std::string> files;
-  app.add_option("--runs", runs, "Mutations")->capture_default_str();
-  app.add_option("--first", first, "Number of the first one: to run one again");
-  app.add_flag("--names", names, "Prints the number of each mutation before it runs");
-  app.add_option("FILE", files, "Runs these instead")->check(CLI::ExistingFile);
-  CLI11_PARSE(app, argc, argv);
+  program.option("--runs", &runs, "Mutations");
+  program.option("--first", &first, "Number of the first one: to run one again");
+  program.option("--names", &names, "Prints the number of each mutation before it runs");
+  program.option("FILE", &files, "Runs these instead");
+  if (const std::optional<int> ended = program.parse(argc, argv)) return *ended;
 
   size_t failed = 0;
   for (const std::string& file : files) {

@@ -7,6 +7,12 @@ if(RADAR_FUZZ)
   target_compile_options(radar_oracle PRIVATE -fno-sanitize=all)
 endif()
 
+if(NOT RADAR_FUZZ)
+  add_library(fuzz_main OBJECT fuzz/seeded_main.cpp)
+  target_include_directories(fuzz_main PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(fuzz_main PUBLIC radar_workloads radar_command PRIVATE radar_warnings)
+endif()
+
 # MUTATIONS: how many a test runs.
 function(radar_fuzz name sentence)
   cmake_parse_arguments(arg "" "MUTATIONS" "SOURCES;LINK" ${ARGN})
@@ -22,8 +28,7 @@ function(radar_fuzz name sentence)
     set(command ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/run $<TARGET_FILE:${program}> ${CMAKE_CURRENT_BINARY_DIR}/fuzz/${name}
         -runs=${arg_MUTATIONS} -seed=1)
   else()
-    target_sources(${program} PRIVATE fuzz/seeded_main.cpp)
-    target_link_libraries(${program} PRIVATE CLI11::CLI11)
+    target_link_libraries(${program} PRIVATE fuzz_main)
     set(command ${program} --runs ${arg_MUTATIONS})
   endif()
   add_test(NAME "fuzz: ${sentence}" COMMAND ${command})

@@ -1,4 +1,4 @@
-// cyber-radar chart, as a person runs it.
+// radar-lab chart, as a person runs it.
 #include <filesystem>
 
 #include "cli/program.h"
@@ -7,6 +7,7 @@
 using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::Run;
+using radar::test::runLab;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;
 
@@ -17,7 +18,7 @@ TEST_CASE("chart leaves numbers, charts and tables, and draws them again from it
   folder.write("tetrahedron.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n");
   const std::string command =
       "chart --extent least --out c own/queries.json \"own/It's thin.json\" own/queries.json --mesh tetrahedron.obj";
-  const Run first = runProgram(folder, command);
+  const Run first = runLab(folder, command);
   INFO(first.err);
   REQUIRE(first.status == 0);
   CHECK_THAT(first.out, Contains("interlocking") && Contains("queries-2"));
@@ -33,14 +34,14 @@ TEST_CASE("chart leaves numbers, charts and tables, and draws them again from it
   CHECK_THAT(table, Contains("\nit-s-thin,4,"));
   std::filesystem::remove(folder.path() / "c/front-thin.svg");
   std::filesystem::remove(folder.path() / "c/workloads.csv");
-  CHECK(runProgram(folder, "chart --render --out c").status == 0);
+  CHECK(runLab(folder, "chart --render --out c").status == 0);
   CHECK(folder.read("c/front-thin.svg") == chart);
   CHECK(folder.read("c/workloads.csv") == table);
 }
 
 TEST_CASE("chart measures only the sections that are named") {
   const ScratchFolder folder;
-  const Run run = runProgram(folder, "chart --extent least --section growth,contacts,edits,recorded --out c");
+  const Run run = runLab(folder, "chart --extent least --section growth,contacts,edits,recorded --out c");
   INFO(run.err);
   CHECK(run.status == 0);
   CHECK_THAT(folder.read("c/growth.csv"), Contains("\nteapots-leaving-ignored,contact,64,"));
@@ -62,36 +63,36 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   std::filesystem::create_directory(folder.path() / "broken");
   folder.write("broken/report.json", "{");
   folder.write("none.json", R"({"format": "cyber-radar-queries-1", "meshes": [], "scenes": [], "queries": []})");
-  checkRefused(folder, "chart", "--out");
-  checkRefused(folder, "chart --out file", "--out");
-  checkRefused(folder, "chart --out c --render", "report.json");
-  checkRefused(folder, "chart --out broken --render", "broken");
-  checkRefused(folder, "chart --out c missing.json", "missing.json");
-  checkRefused(folder, "chart --out c none.json", "queries");
-  checkRefused(folder, "chart --out c --mesh missing.ply", "missing.ply");
-  checkRefused(folder, "chart --out c --device 99", "99");
-  checkRefused(folder, "chart --out c --extent huge", "--extent");
+  checkRefused(folder, "chart", "--out", runLab);
+  checkRefused(folder, "chart --out file", "--out", runLab);
+  checkRefused(folder, "chart --out c --render", "report.json", runLab);
+  checkRefused(folder, "chart --out broken --render", "broken", runLab);
+  checkRefused(folder, "chart --out c missing.json", "missing.json", runLab);
+  checkRefused(folder, "chart --out c none.json", "queries", runLab);
+  checkRefused(folder, "chart --out c --mesh missing.ply", "missing.ply", runLab);
+  checkRefused(folder, "chart --out c --device 99", "99", runLab);
+  checkRefused(folder, "chart --out c --extent huge", "--extent", runLab);
 }
 
 TEST_CASE("without gnuplot chart measures and says how to draw, which gives the charts later") {
   const ScratchFolder folder;
-  const Run run = runProgram(folder, "chart --extent least --section front --out c", "PATH=/nowhere");
+  const Run run = runLab(folder, "chart --extent least --section front --out c", "PATH=/nowhere");
   INFO(run.err);
   CHECK(run.status == 0);
   CHECK_THAT(run.out, Contains("interlocking") && !Contains(".svg"));
   CHECK_THAT(run.err, Contains("gnuplot") && Contains("apt install gnuplot-nox") &&
-                          Contains("cyber-radar chart --render --out " + (folder.path() / "c").string()));
+                          Contains("radar-lab chart --render --out " + (folder.path() / "c").string()));
   CHECK_FALSE(folder.read("c/workloads.csv").empty());
   CHECK_THAT(folder.read("c/index.html"), !Contains(".svg"));
-  CHECK(runProgram(folder, "chart --render --out c").status == 0);
+  CHECK(runLab(folder, "chart --render --out c").status == 0);
   CHECK_THAT(folder.read("c/front-interlocking.svg"), Contains("</svg>"));
   CHECK_THAT(folder.read("c/index.html"), Contains("front-interlocking.svg"));
 }
 
 TEST_CASE("what needs gnuplot does nothing without it, and the error says what to install, with status 2") {
   const ScratchFolder folder;
-  for (const char* arguments : {"chart --render --out c", "scale --sensors 2 --out c"}) {
-    const Run run = runProgram(folder, arguments, "PATH=/nowhere");
+  for (const Run& run : {runLab(folder, "chart --render --out c", "PATH=/nowhere"),
+                         runProgram(folder, "scale --sensors 2 --out c", "PATH=/nowhere")}) {
     CHECK(run.status == 2);
     CHECK(run.out.empty());
     CHECK_THAT(run.err, Contains("gnuplot") && Contains("apt install gnuplot-nox"));

@@ -75,7 +75,7 @@ def test_cast_has_every_option_of_a_query():
 
 
 def test_the_page_of_query_files_has_the_table_of_options():
-    run = subprocess.run([os.environ["RADAR_PROGRAM"], "query", "--fields"], capture_output=True, text=True, check=True)
+    run = subprocess.run([os.environ["RADAR_PROGRAM"], "fields"], capture_output=True, text=True, check=True)
     assert run.stdout in (ROOT / "docs/query-file.md").read_text()
 
 

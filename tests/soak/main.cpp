@@ -1,9 +1,10 @@
 // The soak by command: random edits, batches, devices, recorders and faults, each answer checked. Exit status 1 if
 // anything was wrong.
-#include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
+#include "command/command.h"
 #include "commit/commit.h"
 #include "embed/host.h"
 #include "faults/host_memory.h"
@@ -180,25 +181,17 @@ class Soak {
 
 int main(int argc, char** argv) try {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  CLI::App app("Random edits, batches, devices, recorders and faults: every answer is checked");
+  radar::tools::Program program("radar_soak",
+                                "Random edits, batches, devices, recorders and faults: every answer is checked");
   Options options;
-  auto* minutes = app.add_option("--minutes", options.minutes, "How long")->check(CLI::PositiveNumber);
-  auto* rounds = app.add_option("--rounds", options.rounds, "Or how many rounds")->check(CLI::PositiveNumber);
-  minutes->excludes(rounds);
-  app.add_option("--seed", options.seed, "Another seed, other scenes")->capture_default_str();
-  app.add_option("--first-epoch", options.first, "To ask one again");
-  app.add_option("--scene-rounds", options.ofScene, "Rounds with one scene")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--epoch-rounds", options.ofEpoch, "Rounds with the same devices")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  try {
-    app.parse(argc, argv);
-    if (minutes->empty() && rounds->empty()) throw CLI::RequiredError("--minutes or --rounds");
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  const auto minutes = program.option("--minutes", &options.minutes, "How long").within(0.001, HUGE_VAL);
+  const auto rounds = program.option("--rounds", &options.rounds, "Or how many rounds").within(1, HUGE_VAL);
+  program.option("--seed", &options.seed, "Another seed, other scenes");
+  program.option("--first-epoch", &options.first, "To ask one again");
+  program.option("--scene-rounds", &options.ofScene, "Rounds with one scene").within(1, HUGE_VAL);
+  program.option("--epoch-rounds", &options.ofEpoch, "Rounds with the same devices").within(1, HUGE_VAL);
+  if (const std::optional<int> ended = program.parse(argc, argv)) return *ended;
+  if (minutes.given() == rounds.given()) throw std::invalid_argument("expected either --minutes or --rounds");
   return Soak(options).run();
 } catch (const std::exception& error) {
   std::fprintf(stderr, "radar_soak: %s\n", error.what());

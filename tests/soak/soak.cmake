@@ -6,7 +6,7 @@ add_executable(radar_soak
   support/watched_vulkan.cpp)
 target_include_directories(radar_soak PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine)
 target_link_libraries(radar_soak PRIVATE CyberRadar::radar radar_oracle radar_sweep radar_gpu radar_shaders
-  radar_workloads radar_commit CLI11::CLI11 Vulkan::Vulkan ${CMAKE_DL_LIBS} radar_warnings)
+  radar_workloads radar_commit radar_command Vulkan::Vulkan ${CMAKE_DL_LIBS} radar_warnings)
 set(sentence "soak: random edits, batches, recordings and faults leave every answer right and nothing behind")
 add_test(NAME "${sentence}" COMMAND radar_soak --rounds 40 --scene-rounds 2 --epoch-rounds 40)
 set_tests_properties("${sentence}" PROPERTIES ENVIRONMENT "${validation};${two_devices}")

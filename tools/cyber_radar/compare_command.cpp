@@ -40,18 +40,14 @@ int compare(const Options& options) {
 
 }  // namespace
 
-void addCompareCommand(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("compare", "Tells whether two answer files agree, and where they first do not");
-  command->footer(kExamples);
+void addCompareCommand(Program& program) {
+  Command command =
+      program.add("compare", "Tells whether two answer files agree, and where they first do not", kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("A", options->a, "An answer file: lines of JSON, those of a shard, or records (.npy)")
-      ->required();
-  command->add_option("B", options->b, "Another, to the same queries")->required();
-  command->add_option("--within", options->within, "How far distances may be apart, in the meshes' units")
-      ->type_name("LENGTH")
-      ->capture_default_str();
-  command->callback([options, &status] { status = compare(*options); });
+  command.option("A", &options->a, "An answer file: lines of JSON, those of a shard, or records (.npy)").required();
+  command.option("B", &options->b, "Another, to the same queries").required();
+  command.option("--within", &options->within, "How far distances may be apart, in the meshes' units").value("LENGTH");
+  command.run([options] { return compare(*options); });
 }
 
 }  // namespace radar::tools

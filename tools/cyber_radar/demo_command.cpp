@@ -97,14 +97,14 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
 
 }  // namespace
 
-void addDemoCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
+void addDemoCommand(Program& program) {
+  Command command = program.add(
       "demo", "The paper's teapots among boxes: a table of answers, and a page that shows each flight, R, M and L");
   auto out = std::make_shared<std::string>("cyber-radar-demo");
   auto engine = std::make_shared<EngineOptions>();
-  command->add_option("--out", *out, "Folder for everything")->type_name("DIR")->capture_default_str();
-  engine->addResolutionTo(*command);
-  command->callback([out, engine, &status] { status = demonstrate(*out, engine->checked()); });
+  command.option("--out", out.get(), "Folder for everything").value("DIR");
+  engine->addResolutionTo(command);
+  command.run([out, engine] { return demonstrate(*out, engine->checked()); });
 }
 
 }  // namespace radar::tools

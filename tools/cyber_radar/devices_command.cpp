@@ -72,15 +72,15 @@ int listAll(bool json, bool kernels) {
 
 }  // namespace
 
-void addDevicesCommand(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("devices", "Lists every Vulkan device: usable, or why not; --device takes these numbers");
+void addDevicesCommand(Program& program) {
+  Command command =
+      program.add("devices", "Lists every Vulkan device: usable, or why not; --device takes these numbers");
   auto json = std::make_shared<bool>(false), kernels = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "Prints all that is known of them as one JSON array");
-  command->add_flag("--kernels", *kernels,
-                    "Compiles every kernel for the usable ones, and prints what their compilers tell: registers, "
-                    "spills, code; each driver has its own words");
-  command->callback([json, kernels, &status] { status = listAll(*json, *kernels); });
+  command.option("--json", json.get(), "Prints all that is known of them as one JSON array");
+  command.option("--kernels", kernels.get(),
+                 "Compiles every kernel for the usable ones, and prints what their compilers tell: registers, spills, "
+                 "code; each driver has its own words");
+  command.run([json, kernels] { return listAll(*json, *kernels); });
 }
 
 }  // namespace radar::tools

@@ -12,21 +12,21 @@ constexpr const char* kExamples = R"(Examples:
 
 }  // namespace
 
-void addMergeCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("merge", "Joins the answers of cyber-radar query --shard to one answer file");
-  command->footer(kExamples);
+void addMergeCommand(Program& program) {
+  Command command =
+      program.add("merge", "Joins the answers of cyber-radar query --shard to one answer file", kExamples);
   struct Options {
     std::vector<std::string> files;
     std::string out;
   };
   auto options = std::make_shared<Options>();
-  command->add_option("PART", options->files, "The answer files of all shards, in any order")->required();
-  command->add_option("--out", options->out, "Where the answers go")->required()->type_name("FILE");
-  command->callback([options, &status] {
+  command.option("PART", &options->files, "The answer files of all shards, in any order").required();
+  command.option("--out", &options->out, "Where the answers go").required().value("FILE");
+  command.run([options] {
     Outputs outputs;
     outputs.add("--out", options->out);
     for (const std::string& part : options->files) outputs.requireNone(part);
-    status = mergeShards(options->files, options->out) ? 0 : kStatusSomeInvalid;
+    return mergeShards(options->files, options->out) ? 0 : kStatusSomeInvalid;
   });
 }
 

@@ -49,39 +49,47 @@ uint32_t resolutionFrom(const std::string& text) {
 
 }  // namespace
 
-void EngineOptions::addTo(CLI::App& command) {
-  command
-      .add_option(
-          "--mode", mode,
-          "How to answer: contact, exact, on a Vulkan device or on the CPU (see --cpu-batch); sampled, the paper's "
-          "method on the device, an upper bound of the distance; reference, exact on the CPU, without a device")
-      ->type_name("sampled|contact|reference")
-      ->capture_default_str();
-  addResolutionTo(command);
-  command
-      .add_option("--cpu-batch", cpuBatch,
-                  "In mode contact, batches of fewer queries are answered on the CPU, with the same answers; 0: none; "
-                  "else chosen from the device")
-      ->type_name("N");
-  command.add_option("--threads", threads, "Threads of the exact search on the CPU; 0: one for each core")
-      ->check(CLI::Range(0u, 4096u))
-      ->type_name("N")
-      ->capture_default_str();
+std::vector<NamedOption> EngineOptions::addTo(Command& command) {
+  const Option modeOption =
+      command
+          .option("--mode", &mode,
+                  "How to answer: contact, exact, on a Vulkan device or on the CPU (see --cpu-batch); sampled, the "
+                  "paper's method on the device, an upper bound of the distance; reference, exact on the CPU, without "
+                  "a device")
+          .value("sampled|contact|reference");
+  std::vector<NamedOption> all = addResolutionTo(command);
+  all.push_back({"--mode", modeOption});
+  all.push_back({"--cpu-batch", command
+                                    .option("--cpu-batch", &cpuBatch,
+                                            "In mode contact, batches of fewer queries are answered on the CPU, with "
+                                            "the same answers; 0: none; else chosen from the device")
+                                    .value("N")});
+  all.push_back({"--threads",
+                 command.option("--threads", &threads, "Threads of the exact search on the CPU; 0: one for each core")
+                     .value("N")
+                     .within(0, 4096)});
+  return all;
 }
 
-void EngineOptions::addResolutionTo(CLI::App& command) {
-  command
-      .add_option(
-          "--resolution", resolution,
-          "Pixels of the longer side of a sensor's window in mode sampled; pixels are square; auto chooses from the "
-          "size of the sensor and of its triangles")
-      ->type_name("N|auto")
-      ->capture_default_str();
-  command
-      .add_option("--device", device,
+std::vector<NamedOption> EngineOptions::addResolutionTo(Command& command) {
+  const Option pixels =
+      command
+          .option("--resolution", &resolution,
+                  "Pixels of the longer side of a sensor's window in mode sampled; pixels are square; auto chooses "
+                  "from the size of the sensor and of its triangles")
+          .value("N|auto");
+  const Option number =
+      command
+          .option("--device", &device,
                   std::string("Number of the device, as cyber-radar devices lists them; else the best one") +
                       (severalDevices ? ". Several share the work: 0,1, or all" : ""))
-      ->type_name(severalDevices ? "I,...|all" : "I");
+          .value(severalDevices ? "I,...|all" : "I");
+  return {{"--resolution", pixels}, {"--device", number}};
+}
+
+void addDevicesTo(Command& command, std::string& devices) {
+  command.option("--device", &devices, "Numbers of the devices, as cyber-radar devices lists them: 0,1, or all")
+      .value("I,...|all");
 }
 
 AnsweringOptions EngineOptions::checked() const {
@@ -130,34 +138,30 @@ std::vector<uint32_t> devicesFrom(const std::string& text) {
   }
 }
 
-void SweepOptions::addMotionTo(CLI::App& command) {
-  command.add_option("--direction", direction, "Where the sensor moves; the length does not matter")
-      ->type_size(3)
-      ->expected(1)
-      ->type_name("X Y Z");
-  command.add_option("--distance", distance, "How far, in the meshes' units")->type_name("D");
-  command.add_option("--at", at, "Puts the sensor's origin here")->type_size(3)->expected(1)->type_name("X Y Z");
-  command.add_option("--rotate", rotate, "Turns the sensor first: an axis and degrees")
-      ->type_size(4)
-      ->expected(1)
-      ->type_name("X Y Z ANGLE");
+void SweepOptions::addMotionTo(Command& command) {
+  command.option("--direction", &direction, "Where the sensor moves; the length does not matter")
+      .count(3)
+      .value("X Y Z");
+  command.option("--distance", &distance, "How far, in the meshes' units").value("D");
+  command.option("--at", &at, "Puts the sensor's origin here").count(3).value("X Y Z");
+  command.option("--rotate", &rotate, "Turns the sensor first: an axis and degrees").count(4).value("X Y Z ANGLE");
 }
 
-void SweepOptions::addFieldsTo(CLI::App& command) {
+void SweepOptions::addFieldsTo(Command& command) {
   for (const QueryField& field : queryFields()) {
     if (!field.option) continue;
     std::string name = std::string("--") + field.name;
     std::ranges::replace(name, '_', '-');
-    const auto set = [&, name](double value) {
+    const std::function<void(double)> set = [&, name](double value) {
       if (std::isnan(value) || !setValue(fields, field, value)) {
         throw InputError(name, "", "expected " + expectedFor(field) + ", got " + inShortest(value));
       }
     };
     if (field.kind() == 'b') {
-      command.add_flag_callback(
+      command.option(
           name, [set] { set(1); }, field.about);
     } else {
-      command.add_option_function<double>(name, set, field.about)->type_name("X");
+      command.option(name, set, field.about);
     }
   }
 }

@@ -1,15 +1,20 @@
 // Options that several commands share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command/command.h"
 #include "cyber_radar/answering.h"
 
 namespace radar::tools {
+
+struct NamedOption {
+  const char* name;
+  Option option;
+};
 
 /// --mode, --resolution, --device, --cpu-batch, --threads.
 struct EngineOptions {
@@ -19,8 +24,9 @@ struct EngineOptions {
   uint32_t threads = 0;
   bool severalDevices = false;  ///< --device may name more than one
 
-  void addTo(CLI::App& command);
-  void addResolutionTo(CLI::App& command);
+  /// Returns what was added.
+  std::vector<NamedOption> addTo(Command& command);
+  std::vector<NamedOption> addResolutionTo(Command& command);
   /// Throws InputError that names the option.
   AnsweringOptions checked() const;
 };
@@ -33,14 +39,16 @@ struct SweepOptions {
   QuerySpec fields;
 
   /// All but the two files and the fields.
-  void addMotionTo(CLI::App& command);
+  void addMotionTo(Command& command);
   /// Those of queryFields() that are options.
-  void addFieldsTo(CLI::App& command);
+  void addFieldsTo(Command& command);
   /// Reads both files: mesh 0 and object 0 are the scene's, mesh 1 the sensor's. Prints warnings to standard error.
   /// Throws InputError that names the option or file.
   Workload load() const;
 };
 
+/// --device, of a command that asks several.
+void addDevicesTo(Command& command, std::string& devices);
 /// "all" or "0,1": the numbers, none for all. Throws InputError that names the option.
 std::vector<uint32_t> devicesFrom(const std::string& text);
 

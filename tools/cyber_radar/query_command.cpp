@@ -216,33 +216,30 @@ int query(const Options& options) {
 
 }  // namespace
 
-void addQueryCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("query", "Answers a query file: many sweeps, many scenes, in batches");
-  command->footer(kExamples);
+void addQueryCommand(Program& program) {
+  Command command = program.add("query", "Answers a query file: many sweeps, many scenes, in batches", kExamples);
   auto options = std::make_shared<Options>();
-  options->run.addTo(*command, "times and counts");
-  CLI::Option* repeat =
-      command
-          ->add_option("--repeat", options->repeat,
-                       "Answers N times, after one warm-up, and takes the median time; with --stats once more, for the "
-                       "times of the stages")
-          ->check(CLI::Range(1u, 1'000'000u))
-          ->type_name("N")
-          ->capture_default_str();
+  options->run.addTo(command, "times and counts");
+  const Option repeat = command
+                            .option("--repeat", &options->repeat,
+                                    "Answers N times, after one warm-up, and takes the median time; with --stats once "
+                                    "more, for the times of the stages")
+                            .value("N")
+                            .within(1, 1'000'000);
   command
-      ->add_option("--fail-on", options->failOn,
-                   "Ends with exit status 1 if an answer has one of these statuses: hit, clear, overlap, undecided")
-      ->type_name("STATUS,...");
-  command->add_flag_callback(
-      "--fields",
-      [] {
-        std::cout << queryFieldTable();
-        throw CLI::Success();
-      },
-      "Prints what a query may ask for, as a table in Markdown, and ends");
-  command->callback([=, &status] {
-    options->repeated = repeat->count() > 0;
-    status = query(*options);
+      .option("--fail-on", &options->failOn,
+              "Ends with exit status 1 if an answer has one of these statuses: hit, clear, overlap, undecided")
+      .value("STATUS,...");
+  command.run([=] {
+    options->repeated = repeat.given();
+    return query(*options);
+  });
+}
+
+void addFieldsCommand(Program& program) {
+  program.add("fields", "Prints what a query may ask for, as a table in Markdown").run([] {
+    std::cout << queryFieldTable();
+    return 0;
   });
 }
 

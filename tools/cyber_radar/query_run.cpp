@@ -10,20 +10,22 @@
 
 namespace radar::tools {
 
-void RunOptions::addTo(CLI::App& command, const std::string& about) {
-  command.add_option("FILE.json", file, "Query file; - for standard input")->required();
-  command
-      .add_option("--out", out,
+Option RunOptions::addTo(Command& command, const std::string& about) {
+  command.option("FILE.json", &file, "Query file; - for standard input").required();
+  const Option answers =
+      command
+          .option("--out", &out,
                   "Where the answers go: lines of JSON, or to a file .npy records for numpy; else to standard output")
-      ->type_name("FILE");
+          .value("FILE");
   command
-      .add_option("--shard", shard,
-                  "Answers part I of N equal parts of the queries, I from 0; cyber-radar merge joins the parts")
-      ->type_name("I/N");
-  command.add_flag("--resume", resume, "Finishes what an interrupted run with the same options left in FILE.partial");
-  command.add_option("--stats", stats, "Writes " + about + " here, as one JSON object")->type_name("FILE.json");
+      .option("--shard", &shard,
+              "Answers part I of N equal parts of the queries, I from 0; cyber-radar merge joins the parts")
+      .value("I/N");
+  command.option("--resume", &resume, "Finishes what an interrupted run with the same options left in FILE.partial");
+  command.option("--stats", &stats, "Writes " + about + " here, as one JSON object").value("FILE.json");
   engine.severalDevices = true;
   engine.addTo(command);
+  return answers;
 }
 
 void RunOptions::check() const {

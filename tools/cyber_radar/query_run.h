@@ -15,8 +15,8 @@ struct RunOptions {
   std::string file, out, stats, shard;
   bool resume = false;
 
-  /// `about`: what --stats writes.
-  void addTo(CLI::App& command, const std::string& about);
+  /// `about`: what --stats writes. Returns --out.
+  Option addTo(Command& command, const std::string& about);
   /// Throws InputError that names the option.
   void check() const;
   /// What the run writes. Throws InputError that names the option.

@@ -151,42 +151,29 @@ int scale(Options options) {
 
 }  // namespace
 
-void addScaleCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "scale", "Measures how the work scales over devices, and what limits it: a table, a chart, a timeline");
-  command->footer(kExamples);
+void addScaleCommand(Program& program) {
+  Command command = program.add(
+      "scale", "Measures how the work scales over devices, and what limits it: a table, a chart, a timeline",
+      kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("FILE.json", options->file, "Query file; else the paper's Figure 7");
+  command.option("FILE.json", &options->file, "Query file; else the paper's Figure 7");
+  addDevicesTo(command, options->device);
   command
-      ->add_option("--device", options->device,
-                   "Numbers of the devices, as cyber-radar devices lists them: 0,1, or all")
-      ->type_name("I,...|all")
-      ->capture_default_str();
-  command
-      ->add_option("--mode", options->mode,
-                   "sampled: the paper's method on the objects in reach; naive: on all objects, as the paper does; "
-                   "contact: exact")
-      ->check(CLI::IsMember({"sampled", "naive", "contact"}))
-      ->capture_default_str();
-  command->add_option("--sensors", options->sensors, "Sensors of a batch, with commas between: the axis; else 5 to 30")
-      ->delimiter(',')
-      ->check(CLI::Range(1u, 1'000'000u))
-      ->type_name("N,...");
-  command->add_option("--boxes", options->boxes, "Boxes in the scene")
-      ->check(CLI::Range(1u, 1'000'000u))
-      ->capture_default_str();
-  command->add_option("--steps", options->steps, "Time steps, each a batch")
-      ->check(CLI::Range(1u, 100'000u))
-      ->capture_default_str();
-  command->add_option("--repeat", options->repeats, "Timed passes; the median counts")
-      ->check(CLI::Range(1u, 10'000u))
-      ->capture_default_str();
-  command->add_option("--resolution", options->engine.resolution, "Pixels of a window's longer side")
-      ->type_name("N|auto")
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Folder for a table, a chart and a timeline")->type_name("DIR");
-  command->add_flag("--quick", options->quick, "At most 4 steps and 3 passes; 5, 15 and 30 sensors: about a minute");
-  command->callback([options, &status] { status = scale(*options); });
+      .option("--mode", &options->mode,
+              "sampled: the paper's method on the objects in reach; naive: on all objects, as the paper does; contact: "
+              "exact")
+      .oneOf({"sampled", "naive", "contact"});
+  command.option("--sensors", &options->sensors, "Sensors of a batch, with commas between: the axis; else 5 to 30")
+      .list()
+      .within(1, 1'000'000)
+      .value("N,...");
+  command.option("--boxes", &options->boxes, "Boxes in the scene").value("N").within(1, 1'000'000);
+  command.option("--steps", &options->steps, "Time steps, each a batch").value("N").within(1, 100'000);
+  command.option("--repeat", &options->repeats, "Timed passes; the median counts").value("N").within(1, 10'000);
+  command.option("--resolution", &options->engine.resolution, "Pixels of a window's longer side").value("N|auto");
+  command.option("--out", &options->out, "Folder for a table, a chart and a timeline").value("DIR");
+  command.option("--quick", &options->quick, "At most 4 steps and 3 passes; 5, 15 and 30 sensors: about a minute");
+  command.run([options] { return scale(*options); });
 }
 
 }  // namespace radar::tools

@@ -121,19 +121,19 @@ void drawScopes(Options& options) {
 
 }  // namespace
 
-void addScopesCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("scopes", "Shows the paper's scopes R, M and L of one query");
-  command->footer(kExamples);
+void addScopesCommand(Program& program) {
+  Command command = program.add("scopes", "Shows the paper's scopes R, M and L of one query", kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("FILES", options->files, "A query file; or two mesh files, scene and sensor")
-      ->required()
-      ->expected(1, 2);
-  command->add_option("--query", options->query, "Which query of the query file")->type_name("ID");
-  command->add_option("--out", options->out, "Folder for the page")->required()->type_name("DIR");
-  options->sweep.addMotionTo(*command);
-  options->engine.addResolutionTo(*command);
-  command->add_flag("--raw", options->raw, "Writes the 32-bit values too");
-  command->callback([options] { drawScopes(*options); });
+  command.option("FILES", &options->files, "A query file; or two mesh files, scene and sensor").required().count(1, 2);
+  command.option("--query", &options->query, "Which query of the query file").value("ID");
+  command.option("--out", &options->out, "Folder for the page").required().value("DIR");
+  options->sweep.addMotionTo(command);
+  options->engine.addResolutionTo(command);
+  command.option("--raw", &options->raw, "Writes the 32-bit values too");
+  command.run([options] {
+    drawScopes(*options);
+    return 0;
+  });
 }
 
 }  // namespace radar::tools

@@ -26,8 +26,6 @@ struct Options {
 
 int selftest(const Options& options) {
   const std::vector<uint32_t> numbers = devicesFrom(options.device);
-  // A range check of the parser lets through what is not a number.
-  if (std::isnan(options.minutes)) throw InputError("--minutes", "nan", "expected a number of minutes");
   Json report = lookAtDevices(numbers);
   makeFolder("--out", options.out);
   const std::filesystem::path folder = options.out;
@@ -45,21 +43,15 @@ int selftest(const Options& options) {
 
 }  // namespace
 
-void addSelftestCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "selftest", "Tries every device: its arithmetic, its answers, its speed; leaves a report to read and to send");
-  command->footer(kExamples);
+void addSelftestCommand(Program& program) {
+  Command command = program.add(
+      "selftest", "Tries every device: its arithmetic, its answers, its speed; leaves a report to read and to send",
+      kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("--minutes", options->minutes, "Time limit, over all devices")
-      ->check(CLI::Range(0.1, 10'000.0))
-      ->capture_default_str();
-  command
-      ->add_option("--device", options->device,
-                   "Numbers of the devices, as cyber-radar devices lists them: 0,1, or all")
-      ->type_name("I,...|all")
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Folder for the report")->type_name("DIR")->required();
-  command->callback([options, &status] { status = selftest(*options); });
+  command.option("--minutes", &options->minutes, "Time limit, over all devices").value("N").within(0.1, 10'000);
+  addDevicesTo(command, options->device);
+  command.option("--out", &options->out, "Folder for the report").value("DIR").required();
+  command.run([options] { return selftest(*options); });
 }
 
 }  // namespace radar::tools

@@ -81,24 +81,22 @@ int sweep(const Options& options) {
 
 }  // namespace
 
-void addSweepCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("sweep", "Moves one mesh through another and says what it hits, and where");
-  command->footer(kExamples);
+void addSweepCommand(Program& program) {
+  Command command = program.add("sweep", "Moves one mesh through another and says what it hits, and where", kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->sweep.scene, "Mesh file of what stands still")->required();
-  command->add_option("SENSOR", options->sweep.sensor, "Mesh file of what moves")->required();
-  options->sweep.addMotionTo(*command);
-  options->sweep.addFieldsTo(*command);
-  options->engine.addTo(*command);
-  command->add_option("--view", options->view, "Writes a page here that shows the answer in any browser")
-      ->type_name("FILE.html");
-  command->add_flag("--json", options->json, "Prints the answer as one line of an answer file");
+  command.option("SCENE", &options->sweep.scene, "Mesh file of what stands still").required();
+  command.option("SENSOR", &options->sweep.sensor, "Mesh file of what moves").required();
+  options->sweep.addMotionTo(command);
+  options->sweep.addFieldsTo(command);
+  options->engine.addTo(command);
+  command.option("--view", &options->view, "Writes a page here that shows the answer in any browser")
+      .value("FILE.html");
+  command.option("--json", &options->json, "Prints the answer as one line of an answer file");
   command
-      ->add_option("--expect", options->expect,
-                   "Ends with exit status 1 if the answer is another one; an overlap is a hit, too")
-      ->check(CLI::IsMember({"clear", "hit"}))
-      ->type_name("clear|hit");
-  command->callback([options, &status] { status = sweep(*options); });
+      .option("--expect", &options->expect,
+              "Ends with exit status 1 if the answer is another one; an overlap is a hit, too")
+      .oneOf({"clear", "hit"});
+  command.run([options] { return sweep(*options); });
 }
 
 }  // namespace radar::tools

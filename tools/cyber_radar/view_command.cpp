@@ -73,29 +73,27 @@ int view(const Options& options) {
 
 }  // namespace
 
-void addViewCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("view", "Shows answers: a page that any browser opens");
-  command->footer(kExamples);
+void addViewCommand(Program& program) {
+  Command command = program.add("view", "Shows answers: a page that any browser opens", kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("FILE.json", options->file, "Query file")->required();
-  command->add_option("ANSWERS", options->answers,
-                      "Its answers, as cyber-radar query --out wrote them; else they are found now");
-  command->add_option("--out", options->out, "Where the page goes")->type_name("FILE.html");
-  command->add_option("--gltf", options->gltf, "Writes an animated scene for Blender and others here, as glTF 2.0")
-      ->type_name("FILE.glb");
-  command->add_option("--title", options->title, "Of the page; else the query file's name")->type_name("TEXT");
-  options->engine.addTo(*command);
-  command->callback([options, command, &status] {
-    if (!options->answers.empty()) {
-      for (const char* name : {"--mode", "--resolution", "--device", "--cpu-batch", "--threads"}) {
-        if (command->count(name) == 0) continue;
-        throw InputError(name, "", "expected it only where answers are to be found, got " + options->answers + ", too");
-      }
+  command.option("FILE.json", &options->file, "Query file").required();
+  command.option("ANSWERS", &options->answers,
+                 "Its answers, as cyber-radar query --out wrote them; else they are found now");
+  command.option("--out", &options->out, "Where the page goes").value("FILE.html");
+  command.option("--gltf", &options->gltf, "Writes an animated scene for Blender and others here, as glTF 2.0")
+      .value("FILE.glb");
+  const Option title =
+      command.option("--title", &options->title, "Of the page; else the query file's name").value("TEXT");
+  const std::vector<NamedOption> engine = options->engine.addTo(command);
+  command.run([=] {
+    for (const auto& [name, option] : engine) {
+      if (options->answers.empty() || !option.given()) continue;
+      throw InputError(name, "", "expected it only where answers are to be found, got " + options->answers + ", too");
     }
-    if (options->out.empty() && command->count("--title") > 0) {
+    if (options->out.empty() && title.given()) {
       throw InputError("--title", "", "expected it with --out, whose page it names");
     }
-    status = view(*options);
+    return view(*options);
   });
 }
 

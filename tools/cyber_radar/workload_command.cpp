@@ -1,12 +1,11 @@
+#include <algorithm>
 #include <functional>
-#include <iostream>
 
-#include "batch/query_file.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
+#include "cyber_radar/workload_output.h"
 #include "import/mesh_import.h"
 #include "workloads/generate.h"
-#include "workloads/hard_cases.h"
 #include "workloads/interlocking.h"
 
 namespace radar::tools {
@@ -24,16 +23,6 @@ Equal options give equal files on every machine.)";
 struct MeshFiles : RandomPoses {
   std::vector<std::string> files;
 };
-
-struct HardCases {
-  std::string family;
-  uint64_t seed = 1, first = 0;
-  uint32_t cases = 1;
-};
-
-Workload makeWorkload(const HardCases& options) {
-  return hardScene(hardFamily(options.family), options.seed, options.first, options.cases, Company::mixed);
-}
 
 // What writeQueryFile() would write over.
 void requireUntouched(const MeshFiles& settings, const std::string& folder) {
@@ -54,103 +43,77 @@ Workload makeWorkload(const MeshFiles& options) {
   return makeWorkload(settings);
 }
 
-void addCount(CLI::App& command, const char* name, uint32_t& count, const char* about) {
-  command.add_option(name, count, about)->check(CLI::Range(1u, 100'000'000u))->type_name("N")->capture_default_str();
+Option addCount(Command& command, const char* name, uint32_t& count, const char* about) {
+  return command.option(name, &count, about).value("N").within(1, 100'000'000);
 }
 
 /// The subcommand of one workload, with the options that all have and those that `addOptions` adds.
 template <class Settings>
-void addWorkload(CLI::App& parent, const char* name, const char* about,
-                 const std::function<void(CLI::App&, Settings&)>& addOptions) {
-  CLI::App* command = parent.add_subcommand(name, about);
+void addWorkload(Command& parent, const char* name, const char* about,
+                 const std::function<void(Command&, Settings&)>& addOptions) {
+  Command command = parent.add(name, about);
   auto settings = std::make_shared<Settings>();
-  auto out = std::make_shared<std::string>();
-  command->add_option("--out", *out, "Folder for queries.json, its meshes and instance files")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--seed", settings->seed, "Equal seeds give equal workloads")
-      ->type_name("N")
-      ->capture_default_str();
-  auto binary = std::make_shared<bool>(false);
-  command->add_flag("--binary", *binary, "Writes the queries as an array, in queries.npy, without their ids");
-  addOptions(*command, *settings);
-  command->callback([settings, out, binary] {
-    requireUntouched(*settings, *out);
-    const Workload workload = makeWorkload(*settings);
-    const auto file = writeQueryFile(workload, *out, *binary);
-    std::cout << file.string() << ": " << counted(workload.queries.size(), "query", "queries") << ", "
-              << counted(workload.scenes.size(), "scene") << ", " << counted(workload.meshes.size(), "mesh", "meshes")
-              << "\n";
+  auto output = std::make_shared<WorkloadOutput>();
+  output->addTo(command);
+  command.option("--seed", &settings->seed, "Equal seeds give equal workloads").value("N");
+  addOptions(command, *settings);
+  command.run([settings, output] {
+    requireUntouched(*settings, output->folder);
+    output->write(makeWorkload(*settings));
+    return 0;
   });
 }
 
 template <class Settings>
-void addBoxOptions(CLI::App& command, Settings& settings) {
+void addBoxOptions(Command& command, Settings& settings) {
   addCount(command, "--boxes", settings.boxes, "Boxes in the scene");
   addCount(command, "--sensors", settings.sensors, "Sensors in the batch");
-  command
-      .add_option_function<std::string>(
-          "--shape",
-          [&settings](const std::string& shape) {
-            settings.shape = shape == "box" ? SensorShape::box : SensorShape::teapot;
-          },
-          "Of the sensors")
-      ->check(CLI::IsMember({"box", "teapot"}))
-      ->default_str("teapot");
+  const std::function<void(const std::string&)> set = [&settings](const std::string& shape) {
+    settings.shape = shape == "box" ? SensorShape::box : SensorShape::teapot;
+  };
+  command.option("--shape", set, "Of the sensors; else teapots").oneOf({"box", "teapot"});
 }
 
 template <class Settings>
-void addObjectOptions(CLI::App& command, Settings& settings) {
+void addObjectOptions(Command& command, Settings& settings) {
   addCount(command, "--objects", settings.objects, "Objects in the scene");
   addCount(command, "--sensors", settings.sensors, "Sensors in the batch");
 }
 
+void addInterlockingOptions(Command& command, InterlockingPairs& settings) {
+  addCount(command, "--sensors", settings.sensors, "Pairs, each with a sensor");
+  std::vector<std::string> shapes;
+  for (const Interlocking kind : kInterlocking) shapes.push_back(nameOf(kind));
+  const std::function<void(const std::string&)> set = [&settings, shapes](const std::string& shape) {
+    settings.kind = kInterlocking[std::ranges::find(shapes, shape) - shapes.begin()];
+  };
+  command.option("--shape", set, std::string("Of the pairs; else ") + nameOf(settings.kind)).oneOf(shapes);
+}
+
 }  // namespace
 
-void addWorkloadCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("workload", "Writes the query files of the benchmarks and tests");
-  command->footer(kExamples);
-  command->require_subcommand(1);
-  addWorkload<Table1>(*command, "table1", "The paper's Table 1: random boxes in one cube, one batch",
+void addWorkloadCommand(Program& program) {
+  Command command = program.add("workload", "Writes query files to try, of any size", kExamples);
+  addWorkload<Table1>(command, "table1", "The paper's Table 1: random boxes in one cube, one batch",
                       addBoxOptions<Table1>);
-  addWorkload<Scale>(*command, "scale", "Boxes at one density in a cube that grows, one batch", addBoxOptions<Scale>);
-  addWorkload<Figure7>(*command, "figure7", "The paper's Figure 7: teapots, all of them sensors, fly on",
-                       [](CLI::App& figure7, Figure7& settings) {
+  addWorkload<Scale>(command, "scale", "Boxes at one density in a cube that grows, one batch", addBoxOptions<Scale>);
+  addWorkload<Figure7>(command, "figure7", "The paper's Figure 7: teapots, all of them sensors, fly on",
+                       [](Command& figure7, Figure7& settings) {
                          addCount(figure7, "--teapots", settings.teapots, "Teapots that fly");
                          addCount(figure7, "--boxes", settings.boxes, "Boxes in the scene");
                          addCount(figure7, "--steps", settings.steps, "Time steps, each a scene and a batch");
                        });
-  addWorkload<Soups>(*command, "soup", "Random triangles of every kind, degenerate ones too",
-                     [](CLI::App& soup, Soups& settings) {
+  addWorkload<Soups>(command, "soup", "Random triangles of every kind, degenerate ones too",
+                     [](Command& soup, Soups& settings) {
                        addObjectOptions(soup, settings);
                        addCount(soup, "--triangles", settings.triangles, "Triangles of each mesh");
                      });
-  addWorkload<InterlockingPairs>(*command, "interlocking",
+  addWorkload<InterlockingPairs>(command, "interlocking",
                                  "Pairs of shapes inside each other, far from other pairs: costly queries, one batch",
-                                 [](CLI::App& interlocking, InterlockingPairs& settings) {
-                                   addCount(interlocking, "--sensors", settings.sensors, "Pairs, each with a sensor");
-                                   interlocking
-                                       .add_option_function<std::string>(
-                                           "--shape",
-                                           [&settings](const std::string& shape) {
-                                             for (const Interlocking kind : kInterlocking) {
-                                               if (shape == nameOf(kind)) settings.kind = kind;
-                                             }
-                                           },
-                                           "Of the pairs")
-                                       ->check(CLI::IsMember({"ring on peg", "comb in comb", "crossing"}))
-                                       ->default_str(nameOf(Interlocking::ringOnPeg));
-                                 });
-  addWorkload<HardCases>(
-      *command, "hard", "Cases of a family in which queries are known to fail, in one scene",
-      [](CLI::App& hard, HardCases& settings) {
-        hard.add_option("--family", settings.family, "Which")->required()->check(CLI::IsMember(hardFamilyNames()));
-        hard.add_option("--first", settings.first, "Number of the first case")->capture_default_str();
-        addCount(hard, "--cases", settings.cases, "How many");
-      });
-  addWorkload<MeshFiles>(*command, "meshes", "Given meshes in random poses", [](CLI::App& meshes, MeshFiles& settings) {
+                                 addInterlockingOptions);
+  addWorkload<MeshFiles>(command, "meshes", "Given meshes in random poses", [](Command& meshes, MeshFiles& settings) {
     addObjectOptions(meshes, settings);
-    meshes.add_option("--mesh", settings.files, "Mesh files")->required()->type_name("FILE...");
+    meshes.option("--mesh", &settings.files, "Mesh files").required().value("FILE...");
   });
 }
 

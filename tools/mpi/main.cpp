@@ -8,9 +8,8 @@
 #include <thread>
 
 #include "batch/atomic_file.h"
+#include "command/exit_status.h"
 #include "commit/commit.h"
-#include "cyber_radar/command_line.h"
-#include "cyber_radar/exit_status.h"
 #include "cyber_radar/query_run.h"
 #include "measure/clock.h"
 #include "mpi/coordinator.h"
@@ -226,27 +225,18 @@ class Rank {
 };
 
 int run(int argc, char** argv, const MpiSession& session) {
-  CLI::App app{"Cyber Radar on many machines: answers a query file with the ranks of an MPI run", "cyber-radar-mpi"};
-  app.require_subcommand(1);
-  addBasics(app);
-  CLI::App* command = app.add_subcommand("query", "Answers a query file");
-  command->footer(kExamples);
+  Program program("cyber-radar-mpi", "Cyber Radar on many machines: answers a query file with the ranks of an MPI run");
+  Command command = program.add("query", "Answers a query file", kExamples);
   RunOptions options;
-  options.addTo(*command, "times, and what each rank did,");
-  command->get_option("--out")->required();
+  options.addTo(command, "times, and what each rank did,").required();
   // All ranks read the same options, and one speaks.
   try {
-    app.parse(argc, argv);
+    if (const std::optional<int> status = program.parse(argc, argv, session.rank() > 0)) return *status;
     options.engine.checked();
     options.check();
     if (options.file == "-" || isStream(options.file)) {
       throw InputError("FILE.json", options.file, "expected a file that every rank can read, got a stream");
     }
-  } catch (const CLI::ParseError& error) {
-    if (session.rank() > 0) return error.get_exit_code() == 0 ? 0 : kStatusBadInput;
-    if (app.exit(error) != 0) return kStatusBadInput;
-    if (!std::cout.flush()) throw std::runtime_error("standard output: expected a place to write to, got an error");
-    return 0;
   } catch (const std::exception& error) {
     if (session.rank() == 0) std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
     return kStatusBadInput;

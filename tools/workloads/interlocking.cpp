@@ -47,7 +47,7 @@ Interlocked shapesOf(Interlocking kind) {
 }  // namespace
 
 const char* nameOf(Interlocking kind) {
-  constexpr std::array<const char*, kInterlocking.size()> kNames{"ring on peg", "comb in comb", "crossing"};
+  constexpr std::array<const char*, kInterlocking.size()> kNames{"ring-on-peg", "comb-in-comb", "crossing"};
   return kNames[static_cast<size_t>(kind)];
 }
 

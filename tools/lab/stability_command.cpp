@@ -1,8 +1,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "cyber_radar/commands.h"
 #include "cyber_radar/progress.h"
+#include "lab/commands.h"
 #include "measure/stability.h"
 #include "workloads/hard_cases.h"
 
@@ -11,11 +11,10 @@ namespace radar::tools {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
-  cyber-radar stability --cases 2000 --resolution 16,64     under a minute
-  cyber-radar stability --out stability                     a page and tables of every family
-  cyber-radar stability --family thin --first 17 --cases 1  one case again
-  cyber-radar workload hard --family thin --first 17 --out DIR
-                                                            the case as a query file
+  radar-lab stability --cases 2000 --resolution 16,64       under a minute
+  radar-lab stability --out stability                       a page and tables of every family
+  radar-lab stability --family thin --first 17 --cases 1    one case again
+  radar-lab hard-cases --family thin --first 17 --out DIR   the case as a query file
 
 Needles and plates edge-on, steep faces, exact touching, gaps of one rounding, 10^7 units from the origin, rings on
 pegs, bodies at rest and the like: every tier is asked that offers what the query asks for, and each answer is compared
@@ -51,27 +50,22 @@ int stability(const Options& options) {
 
 }  // namespace
 
-void addStabilityCommand(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "stability", "Holds every tier against the exact answer where collision queries are known to fail");
-  command->footer(kExamples);
+void addStabilityCommand(Program& program) {
+  Command command = program.add(
+      "stability", "Holds every tier against the exact answer where collision queries are known to fail", kExamples);
   auto options = std::make_shared<Options>();
   StabilitySettings& settings = options->settings;
-  command->add_option("--cases", settings.cases, "In all, over the families alike")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{1'000'000'000}))
-      ->capture_default_str();
-  command->add_option("--seed", settings.seed, "Another seed, other cases")->capture_default_str();
-  command->add_option("--resolution", settings.resolutions, "Pixels of the scopes' longer side, with commas between")
-      ->delimiter(',')
-      ->check(CLI::Range(1u, kMaxResolution))
-      ->type_name("N,...")
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Folder for a page and tables of every family")->type_name("DIR");
-  command->add_option("--family", settings.families, "Only these")->check(CLI::IsMember(hardFamilyNames()));
-  command->add_option("--first", settings.first, "Number of each family's first case");
-  command->add_option("--device", options->device, "Number of the device, as cyber-radar devices lists them")
-      ->type_name("I");
-  command->callback([options, &status] { status = stability(*options); });
+  command.option("--cases", &settings.cases, "In all, over the families alike").value("N").within(1, 1e9);
+  command.option("--seed", &settings.seed, "Another seed, other cases").value("N");
+  command.option("--resolution", &settings.resolutions, "Pixels of the scopes' longer side, with commas between")
+      .list()
+      .within(1, kMaxResolution)
+      .value("N,...");
+  command.option("--out", &options->out, "Folder for a page and tables of every family").value("DIR");
+  command.option("--family", &settings.families, "Only these").oneOf(hardFamilyNames());
+  command.option("--first", &settings.first, "Number of each family's first case").value("N");
+  command.option("--device", &options->device, "Number of the device, as cyber-radar devices lists them").value("I");
+  command.run([options] { return stability(*options); });
 }
 
 }  // namespace radar::tools

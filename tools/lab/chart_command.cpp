@@ -7,9 +7,9 @@
 
 #include "baselines/baseline.h"
 #include "batch/query_file.h"
-#include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "import/mesh_import.h"
+#include "lab/commands.h"
 #include "measure/chart.h"
 #include "measure/developer.h"
 #include "measure/plot.h"
@@ -19,10 +19,10 @@ namespace radar::tools {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
-  cyber-radar chart --quick --out chart             about a minute
-  cyber-radar chart --out chart --mesh bunny.ply    all of it: a quarter of an hour
-  cyber-radar chart --out chart batch.json          with queries of your own
-  cyber-radar chart --out chart --render            measures nothing: draws the charts again
+  radar-lab chart --extent quick --out chart             about a minute
+  radar-lab chart --out chart --mesh bunny.ply    all of it: a quarter of an hour
+  radar-lab chart --out chart batch.json          with queries of your own
+  radar-lab chart --out chart --render            measures nothing: draws the charts again
 
 DIR receives index.html, a page with charts and tables; the charts as SVG files and the tables as .csv; and report.json, which
 has all measurements. Tables are on disk as soon as a workload is measured. gnuplot draws the charts: without it, all but they
@@ -33,7 +33,7 @@ struct Options {
   std::vector<std::string> files, meshes, sections{"front", "table1"};
   std::optional<std::string> device;
   std::string out, extent = "full";
-  bool quick = false, render = false;
+  bool render = false;
 
   bool has(const char* section) const { return std::find(sections.begin(), sections.end(), section) != sections.end(); }
 };
@@ -116,7 +116,6 @@ Json readReport(const std::string& folder) {
 
 void chart(Options options) {
   if (options.render) requireGnuplot();
-  if (options.quick) options.extent = "quick";
   Json report = options.render ? readReport(options.out) : measure(options);
   const std::string whyUndrawn = tools::whyUndrawn();
   sumUp(report, options.out, whyUndrawn.empty());
@@ -129,36 +128,34 @@ void chart(Options options) {
             << (whyUndrawn.empty() ? ", charts as .svg\n" : "\n");
   if (whyUndrawn.empty()) return;
   printWarnings({"the charts are not drawn: " + whyUndrawn +
-                 "; then, here or where gnuplot is: cyber-radar chart --render --out " + folder});
+                 "; then, here or where gnuplot is: radar-lab chart --render --out " + folder});
 }
 
 }  // namespace
 
-void addChartCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "chart", "Measures every mode, and other libraries, on the same queries: accuracy against speed, in charts");
-  command->footer(kExamples);
+void addChartCommand(Program& program) {
+  Command command = program.add(
+      "chart", "Measures every mode, and other libraries, on the same queries: accuracy against speed, in charts",
+      kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("FILE.json", options->files, "Query files: workloads of your own");
-  command->add_option("--out", options->out, "Folder for what is measured and drawn")->required()->type_name("DIR");
-  command->add_option("--mesh", options->meshes, "Mesh files: one more workload, of these in random poses")
-      ->type_name("FILE...");
-  command->add_option("--device", options->device, "Number of the device, as cyber-radar devices lists them")
-      ->type_name("I");
-  command->add_option("--extent", options->extent, "How much: full; quick, about a minute; least, to try it out")
-      ->check(CLI::IsMember({"full", "quick", "least"}))
-      ->capture_default_str();
-  command->add_flag("--quick", options->quick, "--extent quick");
+  command.option("FILE.json", &options->files, "Query files: workloads of your own");
+  command.option("--out", &options->out, "Folder for what is measured and drawn").required().value("DIR");
+  command.option("--mesh", &options->meshes, "Mesh files: one more workload, of these in random poses")
+      .value("FILE...");
+  command.option("--device", &options->device, "Number of the device, as cyber-radar devices lists them").value("I");
+  command.option("--extent", &options->extent, "How much: full; quick, about a minute; least, to try it out")
+      .oneOf({"full", "quick", "least"});
   command
-      ->add_option("--section", options->sections,
-                   "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own "
-                   "searches: search, "
-                   "by size of batch; contacts, by kind; edits of a scene; recorded in a host's command buffer")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"front", "table1", "growth", "search", "contacts", "edits", "recorded"}))
-      ->capture_default_str();
-  command->add_flag("--render", options->render, "Measure nothing: draw what --out holds");
-  command->callback([options] { chart(*options); });
+      .option("--section", &options->sections,
+              "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own searches: "
+              "search, by size of batch; contacts, by kind; edits of a scene; recorded in a host's command buffer")
+      .list()
+      .oneOf({"front", "table1", "growth", "search", "contacts", "edits", "recorded"});
+  command.option("--render", &options->render, "Measure nothing: draw what --out holds");
+  command.run([options] {
+    chart(*options);
+    return 0;
+  });
 }
 
 }  // namespace radar::tools

@@ -146,29 +146,31 @@ bool isSettled(const Query& query, double tolerance, const Result& found) {
   return !(query.skipOverlapping && mayCross);
 }
 
-std::optional<Merged> settledAnswer(const Query& query, double tolerance, std::span<const Result> searches) {
-  const auto settled = [&](const Result& found) { return isSettled(query, tolerance, found); };
-  if (query.anyHit) {
-    // One contact settles it, whatever the other searches have found.
-    for (const Result& found : searches) {
-      if (settled(found) && found.status != Status::clear) return Merged{.first = found, .hits = {}};
-    }
-  }
-  if (!std::all_of(searches.begin(), searches.end(), settled)) return std::nullopt;
-  if (searches.size() == 1 && query.hits == 1) return Merged{.first = searches[0], .hits = {}};
-  Merged answer = merged(searches, query.hits);
-  return answer.isCertain ? std::optional(std::move(answer)) : std::nullopt;
-}
-
 }  // namespace
 
-std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches) {
-  auto answer = settledAnswer(query, cpu::toleranceOf(query, scene.meshes[query.mesh]), searches);
-  if (!answer) return answer;
+bool answerFrom(std::span<const Result> searches, const Query& query, const Scene::Impl& scene, Result& answer,
+                std::vector<Result>& hits) {
+  const double tolerance = cpu::toleranceOf(query, scene.meshes[query.mesh]);
+  const auto settled = [&](const Result& found) { return isSettled(query, tolerance, found); };
+  const auto decides = [&](const Result& found) { return settled(found) && found.status != Status::clear; };
   const Course course(query, scene);
-  course.toQuery(answer->first);
-  for (Result& hit : answer->hits) course.toQuery(hit);
-  return answer;
+  // One contact settles a decision, whatever the other searches have found.
+  const auto deciding = query.anyHit ? std::ranges::find_if(searches, decides) : searches.end();
+  if (deciding != searches.end()) {
+    answer = *deciding;
+  } else if (!std::ranges::all_of(searches, settled)) {
+    return false;
+  } else if (searches.size() == 1 && query.hits == 1) {
+    answer = searches[0];
+  } else {
+    Merged all = merged(searches, query.hits);
+    if (!all.isCertain) return false;
+    answer = all.first;
+    if (query.hits > 1) hits = std::move(all.hits);
+    for (Result& hit : hits) course.toQuery(hit);
+  }
+  course.toQuery(answer);
+  return true;
 }
 
 }  // namespace radar

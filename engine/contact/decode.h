@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <limits>
-#include <optional>
 #include <span>
 #include <stop_token>
 
@@ -43,8 +42,9 @@ uint64_t decideAll(std::span<const gpu::UnresolvedPair> pairs, const Deciding& h
 /// The answer to a query with nothing in reach.
 Result clearAnswer();
 
-/// The answer to a query from those of its searches: one or, by ascending object, several.
-/// Nothing if only the CPU can tell.
-std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches);
+/// Makes the answer to a query, and its hits if it lists several, of those of its searches: one or, by ascending
+/// object, several. Returns false, and makes none, if only the CPU can tell.
+bool answerFrom(std::span<const Result> searches, const Query& query, const Scene::Impl& scene, Result& answer,
+                std::vector<Result>& hits);
 
 }  // namespace radar

@@ -137,19 +137,21 @@ GpuScene::Staged ContactPass::beginStaging(uint32_t searches, const Scene::Impl&
   return staged;
 }
 
-GpuScene::Staged ContactPass::stage(const SearchPlan& batch, std::span<const Result> known, const Scene::Impl& scene,
+GpuScene::Staged ContactPass::stage(const SearchSource& batch, std::span<const Result> known, const Scene::Impl& scene,
                                     GpuScene::Overwritten next) {
-  ignoresLeaving_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::ignoreLeaving);
-  hasClearances_ =
-      std::ranges::any_of(batch.stated, [](const gpu::StatedSearch& search) { return search.clearance > 0; });
+  ignoresLeaving_ = batch.ignoresLeaving;
+  hasClearances_ = batch.hasClearances;
   if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
   checkExcluded(*device_, batch.excluded.size());
-  GpuScene::Staged staged = beginStaging(batch.count(), scene, std::move(next));
-  const auto results = static_cast<uint32_t>(std::max(known.size(), batch.stated.size()));
+  GpuScene::Staged staged = beginStaging(batch.count, scene, std::move(next));
+  const auto results = static_cast<uint32_t>(std::max<size_t>(known.size(), batch.count));
   reserve(searchCount_, results, static_cast<uint32_t>(batch.excluded.size()));
-  upload_.add(batch.stated.data(), bytesOf(batch.stated), stated_);
-  upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), solver_.lists().sweeps);
-  upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
+  if (batch.count > 0) {
+    std::byte* const stated = upload_.place(batch.count * sizeof(gpu::StatedSearch), stated_, 0);
+    std::byte* const sweeps = upload_.place(batch.count * sizeof(gpu::Sweep), solver_.lists().sweeps, 0);
+    batch.write(reinterpret_cast<gpu::StatedSearch*>(stated), reinterpret_cast<gpu::Sweep*>(sweeps));
+  }
+  upload_.add(batch.excluded.data(), batch.excluded.size_bytes(), excluded_);
   upload_.add(known.data(), known.size_bytes(), solver_.lists().results);
   return staged;
 }

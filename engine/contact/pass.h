@@ -39,7 +39,7 @@ class ContactPass {
   void reserve(uint32_t searches, uint32_t results, uint32_t excluded);
   /// Makes room for the batch, and stages it with the changes of the scene. `known`: answers that need no search; if
   /// given, they include placeholders for those of the batch. `next`: see GpuScene::stage. The device is idle.
-  GpuScene::Staged stage(const SearchPlan& batch, std::span<const Result> known, const Scene::Impl& scene,
+  GpuScene::Staged stage(const SearchSource& batch, std::span<const Result> known, const Scene::Impl& scene,
                          GpuScene::Overwritten next = {});
   /// The same for `searches` that a shader states after the upload. None has a clearance or ignores what does not
   /// block.

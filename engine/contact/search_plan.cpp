@@ -8,6 +8,7 @@
 #include "math/frame.h"
 #include "math/rounding.h"
 #include "query/course.h"
+#include "scene/parallel.h"
 
 namespace radar {
 
@@ -15,11 +16,14 @@ namespace {
 
 // Longer lengths are out of range anyway.
 constexpr double kLongest = 1e38;
+// Searches that take as long to state as a thread to start.
+constexpr size_t kWorthThread = 4096;
 
 void stateDistance(gpu::StatedSearch& out, const Query& query, const Translation& motion) {
   const double way = motion.wayUntil(motion.end);
-  out.exponent = way > 0 ? std::ilogb(way) : 0;
-  const double mantissa = std::ldexp(way, -out.exponent);
+  const bool isUsual = way >= 0x1p-1000 && way <= 0x1p1000;
+  out.exponent = isUsual ? exponentOf(way) : way > 0 ? std::ilogb(way) : 0;
+  const double mantissa = isUsual ? powerOfTwo(-out.exponent) * way : std::ldexp(way, -out.exponent);
   out.way = roundUp(mantissa);
   // A step's way has been rounded up.
   out.certain = motion.isStep ? roundDown((1 - 0x1p-48) * mantissa) : out.way;
@@ -29,33 +33,18 @@ void stateDistance(gpu::StatedSearch& out, const Query& query, const Translation
 
 }  // namespace
 
-void SearchPlan::clear() {
-  truncate(0);
-}
-
-void SearchPlan::truncate(uint32_t count) {
-  if (count < stated.size()) excluded.resize(stated[count].firstExcluded);
-  stated.resize(count);
-  sweeps.resize(count);
-  while (!groups.empty() && groups.back().first >= count) groups.pop_back();
-}
-
-bool SearchPlan::group(size_t query, uint32_t first) {
-  if (first == count()) return false;
-  groups.push_back({query, first, count() - first});
-  return true;
-}
-
-const SearchPlan::Group& groupOf(std::span<const SearchPlan::Group> groups, uint32_t search) {
+const SearchGroup& groupOf(std::span<const SearchGroup> groups, uint32_t search) {
   return *std::prev(std::partition_point(groups.begin(), groups.end(),
-                                         [&](const SearchPlan::Group& group) { return group.first <= search; }));
+                                         [&](const SearchGroup& group) { return group.first <= search; }));
 }
 
-gpu::Sweep sweepOf(const Query& query, const Translation& motion, const Vector& direction, uint32_t result) {
+gpu::Sweep sweepOf(const Query& query, const Translation& motion, uint32_t result) {
+  // That of a sweep is scaled already.
+  const Vector direction = motion.isStep ? scaledDirection(motion.direction) : motion.direction;
   gpu::Sweep sweep{};
   std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), sweep.pose);
   std::copy(direction.begin(), direction.end(), sweep.direction);
-  sweep.directionLength = exact::length(direction);
+  sweep.directionLength = motion.isStep ? exact::length(direction) : motion.length;
   sweep.distance = motion.end;
   sweep.perParameter = sweep.directionLength;
   if (motion.isStep) {
@@ -67,17 +56,18 @@ gpu::Sweep sweepOf(const Query& query, const Translation& motion, const Vector& 
   return sweep;
 }
 
-Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& scene, const ObjectTree& tree,
-                        ObjectId object) {
-  if (!tree.inRange()) return Planned::outOfRange;
-  if (tree.nodes().empty()) return Planned::clear;
+namespace {
+
+// Without excluded objects.
+Planned stateSearch(const Query& query, uint32_t result, const Scene::Impl& scene, const ObjectTree& tree,
+                    ObjectId object, gpu::StatedSearch& search, gpu::Sweep& sweep) {
   const Translation motion = Course(query, scene).past(object);
-  const Vector direction = scaledDirection(motion.direction);
-  if (std::ilogb(largest(direction)) != 0) return Planned::outOfRange;
-  const Mesh& mesh = scene.meshes[query.mesh];
-  gpu::StatedSearch search{.mesh = query.mesh, .mask = query.mask};
+  sweep = sweepOf(query, motion, result);
+  const Vector direction{sweep.direction[0], sweep.direction[1], sweep.direction[2]};
+  if (const double size = largest(direction); !(size >= 1 && size < 2)) return Planned::outOfRange;
+  search = {.mesh = query.mesh, .mask = query.mask};
   search.start = object == kNone ? tree.nodes()[0].link : gpu::kLinkLeaf | object;
-  const std::array<Vector, 3> axes = axesAlong(direction);
+  const std::array<Vector, 3> axes = axesAlongUnit(motion.unit);
   for (int k = 0; k < 3; ++k) {
     search.across[k] = static_cast<float>(axes[0][k]);
     search.upwards[k] = static_cast<float>(axes[1][k]);
@@ -86,28 +76,108 @@ Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& 
   stateDistance(search, query, motion);
   search.clearance = roundUp(std::min(query.clearance, kLongest));
   search.tolerance = roundUp(std::min(query.tolerance.value_or(kLongest), kLongest));
-  if (query.ignoreLeaving && query.slack) search.slack = roundUp(std::min(2 * *query.slack, kLongest));
+  sweep.cpuDecides = query.clearance > 0 ? 1 : 0;
+  if (!query.ignoreLeaving) return Planned::added;
+  if (query.slack) search.slack = roundUp(std::min(2 * *query.slack, kLongest));
   // A contact that is certain wherever the slack moves a corner blocks. Twice the slack, since it may also tilt planes:
   // then the same holds for triangles in one plane (docs/exact.md, "Pairs that block"). By default the slack is at most
   // a sixteenth of either placement's error.
-  if (query.ignoreLeaving && !query.slack) search.slackShare = 0.125f;
+  if (!query.slack) search.slackShare = 0.125f;
+  sweep.ignoreLeaving = 1;
+  sweep.isMirrored = exact::isMirroring(query.worldFromMesh) ? 1 : 0;
+  sweep.slack = query.slack.value_or(-1);
+  sweep.magnitude = placedMagnitude(scene.meshes[query.mesh].farthest, query.worldFromMesh);
+  return Planned::added;
+}
+
+}  // namespace
+
+Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& scene, const ObjectTree& tree,
+                        ObjectId object) {
+  if (!tree.inRange()) return Planned::outOfRange;
+  if (tree.nodes().empty()) return Planned::clear;
+  gpu::StatedSearch search{};
+  gpu::Sweep sweep{};
+  const Planned planned = stateSearch(query, result, scene, tree, object, search, sweep);
+  if (planned != Planned::added) return planned;
   search.firstExcluded = static_cast<uint32_t>(excluded.size());
   // Who is searched alone takes part.
   if (object == kNone) excluded.insert(excluded.end(), query.exclude.begin(), query.exclude.end());
   std::sort(excluded.begin() + search.firstExcluded, excluded.end());
   search.endExcluded = static_cast<uint32_t>(excluded.size());
-
-  gpu::Sweep sweep = sweepOf(query, motion, direction, result);
-  sweep.cpuDecides = query.clearance > 0 ? 1 : 0;
-  if (query.ignoreLeaving) {
-    sweep.ignoreLeaving = 1;
-    sweep.isMirrored = exact::isMirroring(query.worldFromMesh) ? 1 : 0;
-    sweep.slack = query.slack.value_or(-1);
-    sweep.magnitude = placedMagnitude(mesh.farthest, query.worldFromMesh);
-  }
   stated.push_back(search);
   sweeps.push_back(sweep);
   return Planned::added;
+}
+
+void SearchPlan::clear() {
+  stated.clear();
+  sweeps.clear();
+  excluded.clear();
+  groups.clear();
+}
+
+bool SearchPlan::group(size_t query, uint32_t first) {
+  if (first == count()) return false;
+  groups.push_back({query, first, count() - first});
+  return true;
+}
+
+SearchSource SearchPlan::source() const {
+  const auto hasClearance = [](const gpu::StatedSearch& search) { return search.clearance > 0; };
+  return {count(), excluded, std::ranges::any_of(sweeps, &gpu::Sweep::ignoreLeaving),
+          std::ranges::any_of(stated, hasClearance), [this](gpu::StatedSearch* to, gpu::Sweep* sweepsTo) {
+            std::ranges::copy(stated, to);
+            std::ranges::copy(sweeps, sweepsTo);
+          }};
+}
+
+void SearchList::clear() {
+  searches_.clear();
+  groups_.clear();
+  excluded_.clear();
+  ignoresLeaving_ = hasClearances_ = false;
+}
+
+void SearchList::reserve(size_t searches) {
+  searches_.reserve(searches);
+  groups_.reserve(searches);
+}
+
+void SearchList::add(std::span<const Query> queries, size_t query, std::span<const ObjectId> objects) {
+  const Query& asked = queries[query];
+  ignoresLeaving_ |= asked.ignoreLeaving;
+  hasClearances_ |= asked.clearance > 0;
+  groups_.push_back({query, count(), static_cast<uint32_t>(objects.size())});
+  const auto first = static_cast<uint32_t>(excluded_.size());
+  // Who is searched alone takes part.
+  if (objects[0] == kNone) excluded_.insert(excluded_.end(), asked.exclude.begin(), asked.exclude.end());
+  std::sort(excluded_.begin() + first, excluded_.end());
+  const auto end = static_cast<uint32_t>(excluded_.size());
+  for (const ObjectId object : objects) searches_.push_back({query, object, first, end});
+}
+
+SearchSource SearchList::source(std::span<const Query> queries, const Scene::Impl& scene, const ObjectTree& tree,
+                                unsigned threads) const {
+  return {count(), excluded_, ignoresLeaving_, hasClearances_,
+          [=, &scene, &tree, this](gpu::StatedSearch* stated, gpu::Sweep* sweeps) {
+            parallelFor(count(), kWorthThread, threads, [&](unsigned, size_t from, size_t to) {
+              for (size_t i = from; i < to; ++i) {
+                const Listed& listed = searches_[i];
+                gpu::StatedSearch search;
+                gpu::Sweep sweep;
+                const auto result = static_cast<uint32_t>(i);
+                if (stateSearch(queries[listed.query], result, scene, tree, listed.object, search, sweep) !=
+                    Planned::added) {
+                  search = {.start = gpu::kNobody, .flags = gpu::kSearchOutOfRange};
+                }
+                search.firstExcluded = listed.firstExcluded;
+                search.endExcluded = listed.endExcluded;
+                stated[i] = search;
+                sweeps[i] = sweep;
+              }
+            });
+          }};
 }
 
 }  // namespace radar

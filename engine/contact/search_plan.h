@@ -1,6 +1,7 @@
 // Plans the searches of queries for the device, which encodes them (shaders/contact/encode.comp.glsl).
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,18 +17,31 @@ enum class Planned {
   outOfRange  ///< floats cannot hold the scene or the direction; for the rest, the device finds out
 };
 
-/// What one submission or recording searches.
-struct SearchPlan {
-  /// The searches of a query: one past all objects, or several past one object each, by ascending object.
-  struct Group {
-    size_t query;
-    uint32_t first, count;
-  };
+/// The searches of a query in a submission or recording: one past all objects, or several past one object each, by
+/// ascending object.
+struct SearchGroup {
+  size_t query;
+  uint32_t first, count;
+};
 
+/// The group of a search. `groups`: in the order of their searches.
+const SearchGroup& groupOf(std::span<const SearchGroup> groups, uint32_t search);
+
+/// Searches to be staged (ContactPass): so many, and who writes them and the list of excluded objects.
+struct SearchSource {
+  uint32_t count = 0;
+  std::span<const uint32_t> excluded;
+  bool ignoresLeaving = false, hasClearances = false;  ///< some search
+  /// Fills `count` of each, in memory that is slow to read.
+  std::function<void(gpu::StatedSearch* stated, gpu::Sweep* sweeps)> write;
+};
+
+/// What a recording searches.
+struct SearchPlan {
   std::vector<gpu::StatedSearch> stated;
   std::vector<gpu::Sweep> sweeps;  ///< of the same searches, in double precision
   std::vector<uint32_t> excluded;
-  std::vector<Group> groups;  ///< in the order of their searches
+  std::vector<SearchGroup> groups;  ///< in the order of their searches
 
   uint32_t count() const { return static_cast<uint32_t>(stated.size()); }
   void clear();
@@ -37,15 +51,39 @@ struct SearchPlan {
               ObjectId object = kNone);
   /// Makes a group of the searches from `first` on, unless there are none. Returns whether it did.
   bool group(size_t query, uint32_t first);
-  /// Forgets all but the first `count` searches, which are those of whole groups.
-  void truncate(uint32_t count);
+
+  SearchSource source() const;
 };
 
-/// The group of a search.
-const SearchPlan::Group& groupOf(std::span<const SearchPlan::Group> groups, uint32_t search);
+/// What a submission searches: stated only when that is staged, so that each search is written once, by all threads.
+/// Answers get the indices of their searches; those of searches that floats cannot hold say so.
+class SearchList {
+ public:
+  uint32_t count() const { return static_cast<uint32_t>(searches_.size()); }
+  /// In the order of their searches.
+  std::span<const SearchGroup> groups() const { return groups_; }
+  void clear();
+  void reserve(size_t searches);
+  /// Adds a search for each of `objects`, of which there are some, as SearchPlan::add().
+  void add(std::span<const Query> queries, size_t query, std::span<const ObjectId> objects);
+  /// The tree over objects is in range and not empty; all outlive the source.
+  SearchSource source(std::span<const Query> queries, const Scene::Impl& scene, const ObjectTree& tree,
+                      unsigned threads) const;
 
-/// A query's search in double precision, but for what depends on a scale. `motion`: the query's; `direction`: that of
-/// the motion, by scaledDirection(). `result`: the index of its answer.
-gpu::Sweep sweepOf(const Query& query, const Translation& motion, const Vector& direction, uint32_t result);
+ private:
+  struct Listed {
+    size_t query;
+    ObjectId object;  ///< the only one to search, or kNone
+    uint32_t firstExcluded, endExcluded;
+  };
+  std::vector<Listed> searches_;
+  std::vector<SearchGroup> groups_;
+  std::vector<uint32_t> excluded_;
+  bool ignoresLeaving_ = false, hasClearances_ = false;
+};
+
+/// A query's search in double precision, but for what depends on a scale. `motion`: the query's. `result`: the index of
+/// its answer.
+gpu::Sweep sweepOf(const Query& query, const Translation& motion, uint32_t result);
 
 }  // namespace radar

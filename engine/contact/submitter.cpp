@@ -41,6 +41,14 @@ void Pace::took(double ms) {
   }
 }
 
+namespace {
+
+gpu::Buffer readbackFor(const gpu::Owner& owner) {
+  return {owner, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT};
+}
+
+}  // namespace
+
 ContactSubmitter::ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchRoom& room)
     : scene_(scene),
       now_(room.now ? room.now : std::chrono::steady_clock::now),
@@ -48,10 +56,10 @@ ContactSubmitter::ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, boo
             room.budget != 0 ? room.budget : ContactPass::kMostBudget),
       submission_(owner, timestamps),
       pass_(owner, scene, room),
-      readback_(owner, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+      readbacks_{readbackFor(owner), readbackFor(owner)} {}
 
 const gpu::SearchCounts& ContactSubmitter::counts() const {
-  return *reinterpret_cast<const gpu::SearchCounts*>(readback_.mapped());
+  return *reinterpret_cast<const gpu::SearchCounts*>(readbacks_[readback_].mapped());
 }
 
 void ContactSubmitter::recordAndSubmit() {
@@ -66,17 +74,18 @@ void ContactSubmitter::recordAndSubmit() {
   stage("readback");
   const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
   const VkBufferCopy results{0, PairSolver::kFirstResult, pass_.searchCount() * sizeof(Result)};
-  commands->CmdCopyBuffer(commands, pass_.counts().get(), readback_.get(), 1, &counts);
-  commands->CmdCopyBuffer(commands, pass_.results().get(), readback_.get(), 1, &results);
+  commands->CmdCopyBuffer(commands, pass_.counts().get(), readbacks_[readback_].get(), 1, &counts);
+  commands->CmdCopyBuffer(commands, pass_.results().get(), readbacks_[readback_].get(), 1, &results);
   gpu::writtenToHost(commands);
   submission_.submit();
   ++submissions_;
 }
 
-void ContactSubmitter::submit(const SearchPlan& batch, const Scene::Impl& scene) {
+void ContactSubmitter::submit(const SearchSource& batch, const Scene::Impl& scene) {
   submissions_ = 0;
   staged_ = pass_.stage(batch, {}, scene);
-  readback_.reserve(PairSolver::kFirstResult + batch.count() * sizeof(Result));
+  readback_ = 1 - readback_;
+  readbacks_[readback_].reserve(PairSolver::kFirstResult + batch.count * sizeof(Result));
   recordAndSubmit();
 }
 
@@ -100,9 +109,10 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages, const st
   }
   const gpu::SearchCounts& all = counts();
   if (all.broken != 0) throw Error(wordsFor(all.broken), VK_ERROR_DEVICE_LOST);
-  const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + PairSolver::kFirstResult);
+  auto* results = reinterpret_cast<Result*>(readbacks_[readback_].mapped() + PairSolver::kFirstResult);
+  const std::span<const gpu::UnresolvedPair> unresolved = pass_.unresolved(all);
   return {{results, pass_.searchCount()},
-          pass_.unresolved(all),
+          {unresolved.begin(), unresolved.end()},
           pass_.learn(all),
           joined(all.trianglePairs, all.trianglePairsHigh)};
 }

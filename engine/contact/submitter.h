@@ -8,10 +8,10 @@
 
 namespace radar {
 
-/// The device's answers to a batch; valid until the next submit().
+/// The device's answers to a batch; valid until the next submit() but one.
 struct SearchAnswers {
-  std::span<const Result> results;  ///< one per search
-  std::span<const gpu::UnresolvedPair> unresolved;
+  std::span<Result> results;  ///< one per search; whoever reads them may change them
+  std::vector<gpu::UnresolvedPair> unresolved;
   bool roomier = false;        ///< this batch had too little room for candidates; the next one has more
   uint64_t trianglePairs = 0;  ///< tested
 };
@@ -40,7 +40,7 @@ class ContactSubmitter {
   ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchRoom& room);
 
   /// Submits the batch and returns without waiting; call collect() next.
-  void submit(const SearchPlan& batch, const Scene::Impl& scene);
+  void submit(const SearchSource& batch, const Scene::Impl& scene);
   /// Waits, and submits more rounds until the search is complete. The flags of an invalid result tell what the device
   /// had no room or range for. Throws Cancelled instead of submitting a round after `stop` is requested.
   SearchAnswers collect(std::vector<StageTime>& stages, const std::stop_token& stop);
@@ -58,7 +58,8 @@ class ContactSubmitter {
   Pace pace_;
   gpu::Submission submission_;
   ContactPass pass_;
-  gpu::Buffer readback_;  ///< counts, then results
+  std::array<gpu::Buffer, 2> readbacks_;  ///< counts, then results: those of the last batch, and of the one before
+  size_t readback_ = 0;
   GpuScene::Staged staged_;
   uint32_t submissions_ = 0;
 };

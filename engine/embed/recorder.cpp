@@ -129,7 +129,7 @@ GpuScene::Staged Recorder::Impl::stage(std::span<const Query> queries, const Hos
   begin(hostGeometry);
   recorded.plan(queries, scene.impl(), geometry, capacity.searches);
   gathers.stage(recorded.gathered);
-  return pass.stage(recorded.searches, recorded.known, scene.impl(), geometry.overwritten());
+  return pass.stage(recorded.searches.source(), recorded.known, scene.impl(), geometry.overwritten());
 }
 
 GpuScene::Staged Recorder::Impl::stage(const HostQueries& queries, const HostGeometry& hostGeometry) {

@@ -227,7 +227,9 @@ double exactLength(const Vector& d, double root) {
 }  // namespace
 
 double length(const Vector& d) {
-  const double root = std::hypot(d[0], d[1], d[2]);
+  // Where no square that counts overflows or is subnormal, the plain root is near enough.
+  const double plain = radar::dot(d, d);
+  const double root = plain >= 0x1p-800 && plain <= 0x1p800 ? std::sqrt(plain) : std::hypot(d[0], d[1], d[2]);
   if (!std::isfinite(root)) return root;
   if (root < 0x1p-400 || root > 0x1p400) return exactLength(d, root);
   DoubleDouble square;

@@ -12,14 +12,6 @@ namespace {
 // Below this, the relative error of a length or a quotient may exceed its rounding error.
 constexpr double kLeastNormal = 0x1p-900;
 
-Vector normalized(Vector v) {
-  const double size = largest(v);
-  for (double& c : v) c /= size;
-  const double length = std::sqrt(dot(v, v));
-  for (double& c : v) c /= length;
-  return v;
-}
-
 }  // namespace
 
 Translation::Translation(const Query& query)

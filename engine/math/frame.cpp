@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "math/rounding.h"
+
 namespace radar {
 
 namespace {
@@ -15,10 +17,35 @@ Vector unit(Vector v) {
   return v;
 }
 
+// Across a direction of length 1, and across the axis to which that is nearest to a right angle.
+Vector acrossFrom(const Vector& forward) {
+  int least = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(forward[k]) < std::abs(forward[least])) least = k;
+  }
+  Vector axis{};
+  axis[least] = 1;
+  return cross(forward, axis);
+}
+
 }  // namespace
+
+Vector normalized(Vector v) {
+  const double size = largest(v);
+  for (double& x : v) x /= size;
+  const double length = std::sqrt(dot(v, v));
+  for (double& x : v) x /= length;
+  return v;
+}
 
 Vector scaledDirection(const Vector& direction) {
   const double size = largest(direction);
+  // All but directions of extreme lengths.
+  if (size >= 0x1p-1000 && size <= 0x1p1000) {
+    const double factor = powerOfTwo(-exponentOf(size)), inverse = powerOfTwo(exponentOf(size));
+    const Vector out = scaled(factor, direction);
+    if (scaled(inverse, out) == direction) return out;
+  }
   const auto scaledBy = [&](int exponent) -> std::optional<Vector> {
     Vector out;
     for (int k = 0; k < 3; ++k) {
@@ -36,14 +63,13 @@ double lengthOf(const Vector& v) {
 }
 
 std::array<Vector, 3> axesAlong(const Vector& direction) {
-  const Vector forward = unit(direction);
-  int least = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (std::abs(forward[k]) < std::abs(forward[least])) least = k;
-  }
-  Vector across{};
-  across[least] = 1;
-  const Vector up = unit(cross(forward, across));
+  const Vector forward = unit(direction), up = unit(acrossFrom(forward));
+  return {cross(up, forward), up, forward};
+}
+
+std::array<Vector, 3> axesAlongUnit(const Vector& forward) {
+  // Its square is at least 2/3.
+  const Vector across = acrossFrom(forward), up = scaled(1 / std::sqrt(dot(across, across)), across);
   return {cross(up, forward), up, forward};
 }
 

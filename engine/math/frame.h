@@ -9,6 +9,11 @@ namespace radar {
 /// Orthonormal axes: [2] along `direction` (finite, not zero), [0] and [1] across. A direction along a world axis gives
 /// world axes, exactly.
 std::array<Vector, 3> axesAlong(const Vector& direction);
+/// The same along a direction of length 1, to a few roundings.
+std::array<Vector, 3> axesAlongUnit(const Vector& forward);
+
+/// `v`, which is not zero, at length 1; without intermediate overflow or underflow.
+Vector normalized(Vector v);
 
 /// `direction`, scaled by a power of two so that its largest component is 1 to 2: the same motion, far from underflow.
 /// If the components differ too much in size for that to be exact, it is scaled only so that its length does not

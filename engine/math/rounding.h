@@ -9,6 +9,16 @@ namespace radar {
 /// 2^-53: bound on the relative rounding error of an operation in double.
 inline constexpr double kUnit = 0x1p-53;
 
+/// 2^exponent; -1022 <= exponent <= 1023.
+inline double powerOfTwo(int exponent) {
+  return std::bit_cast<double>(static_cast<uint64_t>(exponent + 1023) << 52);
+}
+
+/// The exponent of a normal number above 0: std::ilogb, inline.
+inline int exponentOf(double x) {
+  return static_cast<int>(std::bit_cast<uint64_t>(x) >> 52) - 1023;
+}
+
 /// The least float above `x`, which is finite: std::nextafter, inline.
 inline float nextAbove(float x) {
   const auto bits = std::bit_cast<uint32_t>(x);

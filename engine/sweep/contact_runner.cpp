@@ -1,6 +1,8 @@
 #include "sweep/contact_runner.h"
 
 #include <algorithm>
+#include <array>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -16,23 +18,32 @@ namespace radar {
 
 namespace {
 
-// Searches of one submission, at most: what a device has in hand while the next ones are planned.
-constexpr size_t kMostSearches = 1u << 14;
+// Searches of one submission, at most: what a device has in hand while the next ones are planned. An NVIDIA H200 takes
+// half as long for 131,072 searches in two submissions as in eight, each of which ends with few lanes at work.
+constexpr size_t kMostSearches = 1u << 16, kMostSearchesOnCpu = 1u << 14;
 // Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
 // the batch (docs/performance.md). On another, a submission takes the time in which a CPU answers some queries: an
 // estimate, as no such device has been measured.
 constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
+// Searches whose answers take as long to decode as a thread to start.
+constexpr size_t kWorthThread = 8192;
 // Pairs that are left to the host: more of one search are dearer to decide than to search again.
 constexpr size_t kMostDecided = 256;
 
 // Of one submission: what a texel buffer of their sensors holds.
 size_t mostSearchesOf(const Device::Impl& device) {
-  return std::min<size_t>(kMostSearches, device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
+  return std::min<size_t>(device.runsOnCpu() ? kMostSearchesOnCpu : kMostSearches,
+                          device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
 }
 
 uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
   if (options.cpuBatch != kNone) return options.cpuBatch;
   return device.runsOnCpu() ? kCpuBatchOnCpu : kCpuBatchElsewhere;
+}
+
+// No answer, though no list was full.
+bool isMissing(const Result& result) {
+  return result.flags == 0 && result.status == Status::invalid;
 }
 
 }  // namespace
@@ -72,7 +83,7 @@ void ContactRunner::finish(Flight& flight) {
 }
 
 void ContactRunner::abandon(Flight& flight) noexcept {
-  flight.planned = {};
+  planned_.clear();
   flight.left.clear();
   flight.again.clear();
   if (std::exchange(flight.submitted, {}).empty()) return;
@@ -91,6 +102,7 @@ void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
   const ObjectTree& tree = scene_.impl().objectTree();
   flight.addCpuTime("select", msSince(begun));
   flight.encoding = Clock::now();
+  planned_.reserve(std::min(which.size(), mostSearches_));
   for (const size_t query : which) {
     throwIfStopped(flight.stop);
     if (!planQuery(flight, query, tree)) flight.left.push_back(query);
@@ -99,29 +111,28 @@ void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
 }
 
 bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tree) {
+  static constexpr std::array kAll{kNone};
   const Query& asked = flight.queries[query];
   const Scene::Impl& scene = scene_.impl();
   const Route route = routeOf(asked, scene, true);
   if (route == Route::cpu || !tree.inRange()) return false;
-  std::vector<ObjectId> objects{kNone};
-  if (route == Route::searchEach) objects = inReach(asked, scene, tree, roomyBox(asked, scene));
+  std::vector<ObjectId> inReachOfIt;
+  std::span<const ObjectId> objects = kAll;
+  if (route == Route::searchEach) objects = inReachOfIt = inReach(asked, scene, tree, roomyBox(asked, scene));
   if (objects.size() > mostSearches_) return false;
-  if (flight.planned.count() + objects.size() > mostSearches_) submit(flight);
-  SearchPlan& searches = flight.planned;
-  const uint32_t first = searches.count();
-  for (const ObjectId object : objects) {
-    if (searches.add(asked, searches.count(), scene, tree, object) != Planned::outOfRange) continue;
-    searches.truncate(first);
-    return false;
+  if (objects.empty() || tree.nodes().empty()) {
+    flight.answers.results[query] = clearAnswer();
+    return true;
   }
-  if (!searches.group(query, first)) flight.answers.results[query] = clearAnswer();
+  if (planned_.count() + objects.size() > mostSearches_) submit(flight);
+  planned_.add(flight.queries, query, objects);
   return true;
 }
 
 template <class Step>
-bool ContactRunner::attempt(Flight& flight, std::span<const SearchPlan::Group> groups, const Step& step) {
+bool ContactRunner::attempt(Flight& flight, std::span<const SearchGroup> groups, const Step& step) {
   const auto leave = [&] {
-    for (const SearchPlan::Group& group : groups) flight.left.push_back(group.query);
+    for (const SearchGroup& group : groups) flight.left.push_back(group.query);
   };
   try {
     step();
@@ -133,69 +144,89 @@ bool ContactRunner::attempt(Flight& flight, std::span<const SearchPlan::Group> g
       if (gpu::isLost(error)) flight.answers.stats.lost = lost_ = error.what();
       leave();
     } else {
-      for (const SearchPlan::Group& group : groups) flight.fail(group.query, error);
+      for (const SearchGroup& group : groups) flight.fail(group.query, error);
     }
   }
   return false;
 }
 
 void ContactRunner::submit(Flight& flight) {
-  flight.addCpuTime("encode", msSince(flight.encoding));
-  SearchPlan planned = std::exchange(flight.planned, {});
-  if (planned.groups.empty()) return;
-  collect(flight);
-  const bool isSubmitted = attempt(flight, planned.groups, [&] {
+  if (planned_.groups().empty()) return flight.addCpuTime("plan", msSince(flight.encoding));
+  flight.addCpuTime("plan", msSince(flight.encoding));
+  // The device goes on while the last submission's answers are decoded.
+  const std::vector<SearchGroup> last = std::exchange(flight.submitted, {});
+  const std::optional<SearchAnswers> found = wait(flight, last);
+  bool isTooLarge = false;
+  const bool isSubmitted = attempt(flight, planned_.groups(), [&] {
     if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, room_);
     try {
-      submitter_->submit(planned, scene_.impl());
+      const Clock::time_point begun = Clock::now();
+      const Scene::Impl& scene = scene_.impl();
+      submitter_->submit(planned_.source(flight.queries, scene, scene.objectTree(), options_.cpuThreads), scene);
+      flight.addCpuTime("submit", msSince(begun));
     } catch (const Error& error) {
-      if (gpu::isOutOfMemory(error)) submitter_.reset();  // its lists may have grown too large
+      isTooLarge = gpu::isOutOfMemory(error);
       throw;
     }
   });
-  if (isSubmitted) flight.submitted = std::move(planned.groups);
+  if (isSubmitted) flight.submitted.assign(planned_.groups().begin(), planned_.groups().end());
+  planned_.clear();
+  if (found) decode(flight, *found, last);
+  if (isTooLarge) submitter_.reset();  // its lists may have grown too large
   flight.encoding = Clock::now();
 }
 
-void ContactRunner::collect(Flight& flight) {
-  const std::vector<SearchPlan::Group> groups = std::exchange(flight.submitted, {});
-  if (groups.empty()) return;
+std::optional<SearchAnswers> ContactRunner::wait(Flight& flight, std::span<const SearchGroup> groups) {
+  std::optional<SearchAnswers> found;
+  if (groups.empty()) return found;
   attempt(flight, groups, [&] {
-    const SearchAnswers found = submitter_->collect(flight.answers.stats.stages, flight.stop);
+    found = submitter_->collect(flight.answers.stats.stages, flight.stop);
     flight.deviceDone = Clock::now();
     flight.answers.stats.submissions += submitter_->submissions();
-    flight.answers.stats.pairs += found.trianglePairs;
-    decode(flight, found, groups);
-    flight.addCpuTime("decode", msSince(flight.deviceDone));
+    flight.answers.stats.pairs += found->trianglePairs;
   });
+  return found;
 }
 
-void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span<const SearchPlan::Group> groups) {
-  const Scene::Impl& scene = scene_.impl();
-  std::vector<Result> results(found.results.begin(), found.results.end());
-  for (const Result& result : results) {
-    if (result.flags != 0 || result.status != Status::invalid) continue;
-    throw Error(Error::Kind::internal, "the contact search lost a certain contact");
-  }
-  const Deciding how{*resident_.farthest(), kMostDecided, options_.cpuThreads, flight.stop};
-  flight.answers.stats.cpuPairs += decideAll(found.unresolved, how, [&](uint32_t search, ObjectId object) {
-    const Query& query = flight.queries[groupOf(groups, search).query];
-    return OpenSearch{results[search], query, Course(query, scene).past(object),
-                      cpu::toleranceOf(query, scene.meshes[query.mesh])};
+void ContactRunner::collect(Flight& flight) {
+  const std::vector<SearchGroup> groups = std::exchange(flight.submitted, {});
+  if (const auto found = wait(flight, groups)) decode(flight, *found, groups);
+}
+
+void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span<const SearchGroup> groups) {
+  const Clock::time_point begun = Clock::now();
+  attempt(flight, groups, [&] {
+    const Scene::Impl& scene = scene_.impl();
+    const Deciding how{*resident_.farthest(), kMostDecided, options_.cpuThreads, flight.stop};
+    flight.answers.stats.cpuPairs += decideAll(found.unresolved, how, [&](uint32_t search, ObjectId object) {
+      const Query& query = flight.queries[groupOf(groups, search).query];
+      return OpenSearch{found.results[search], query, Course(query, scene).past(object),
+                        cpu::toleranceOf(query, scene.meshes[query.mesh])};
+    });
+    std::mutex rest;
+    parallelFor(groups.size(), kWorthThread, options_.cpuThreads, [&](unsigned, size_t from, size_t to) {
+      for (const SearchGroup& group : groups.subspan(from, to - from)) {
+        const auto searches = found.results.subspan(group.first, group.count);
+        if (std::ranges::any_of(searches, isMissing)) {
+          throw Error(Error::Kind::internal, "the contact search lost a certain contact");
+        }
+        if (answerGroup(flight, group, searches)) continue;
+        const bool lacksRoom = found.roomier && std::ranges::any_of(searches, [](const Result& result) {
+                                 return result.flags == Flag::candidates;
+                               });
+        const std::scoped_lock lock(rest);
+        (lacksRoom ? flight.again : flight.left).push_back(group.query);
+      }
+    });
   });
-  for (const SearchPlan::Group& group : groups) {
-    const Query& query = flight.queries[group.query];
-    const auto searches = std::span(results).subspan(group.first, group.count);
-    const bool lacksRoom = found.roomier && std::any_of(searches.begin(), searches.end(), [](const Result& result) {
-                             return result.flags == Flag::candidates;
-                           });
-    if (auto answer = certainAnswer(query, scene, searches)) {
-      flight.answers.results[group.query] = answer->first;
-      if (query.hits > 1) flight.answers.lists[group.query].hits = std::move(answer->hits);
-    } else {
-      (lacksRoom ? flight.again : flight.left).push_back(group.query);
-    }
-  }
+  flight.addCpuTime("decode", msSince(begun));
+}
+
+bool ContactRunner::answerGroup(Flight& flight, const SearchGroup& group, std::span<const Result> searches) {
+  std::vector<Result> none;
+  Answers& answers = flight.answers;
+  return answerFrom(searches, flight.queries[group.query], scene_.impl(), answers.results[group.query],
+                    answers.lists.empty() ? none : answers.lists[group.query].hits);
 }
 
 void ContactRunner::answerLeft(Flight& flight) {

@@ -26,16 +26,20 @@ class ContactRunner {
 
  private:
   void plan(Flight& flight, std::span<const size_t> which);
-  /// Plans the searches of a query; returns false, and plans none, if floats cannot hold one.
+  /// Lists the searches of a query; returns false, and lists none, if the CPU has to answer it.
   bool planQuery(Flight& flight, size_t query, const ObjectTree& tree);
   void submit(Flight& flight);
   void collect(Flight& flight);
-  void decode(Flight& flight, const SearchAnswers& found, std::span<const SearchPlan::Group> groups);
+  /// Waits for the last submission, whose searches are `groups`, and counts what it took; nothing if that fails.
+  std::optional<SearchAnswers> wait(Flight& flight, std::span<const SearchGroup> groups);
+  void decode(Flight& flight, const SearchAnswers& found, std::span<const SearchGroup> groups);
+  /// As answerFrom(). Called on several threads, of different groups.
+  bool answerGroup(Flight& flight, const SearchGroup& group, std::span<const Result> searches);
   void answerLeft(Flight& flight);
   /// Calls `step`; leaves the queries to the CPU if memory, or a limit of the device, does not suffice for it, or the
   /// device is lost, and without an answer if another Vulkan call fails. Returns whether nothing did.
   template <class Step>
-  bool attempt(Flight& flight, std::span<const SearchPlan::Group> groups, const Step& step);
+  bool attempt(Flight& flight, std::span<const SearchGroup> groups, const Step& step);
 
   const gpu::Owner owner_;
   const Device::Impl& device_;
@@ -45,6 +49,7 @@ class ContactRunner {
   const SearchRoom room_;
   const size_t mostSearches_;                  ///< per submission
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
+  SearchList planned_;                         ///< for the next submission
   cpu::Search cpu_;
   std::string lost_;  ///< as SweepStats::lost
 };

@@ -59,7 +59,7 @@ bool SampledRunner::trySubmit(Flight& flight, std::span<Planned> part, bool isLa
     queries.push_back(planned.query);
   }
   drawn_ = packBatch(plans, device_.choosesLayers);
-  flight.addCpuTime("encode", msSince(start));
+  flight.addCpuTime("plan", msSince(start));
   try {
     submitter_.submit(drawn_, scene_.impl());
   } catch (const Error& error) {

@@ -40,7 +40,7 @@ struct OnDevicePlaces : test::Encoded {
     SearchPlan batch = statedFor(scene, queries);
     for (gpu::Sweep& sweep : batch.sweeps) sweep.magnitude = -1;
     const std::vector<Result> known(queries.size());
-    search.stage(batch, known, impl, geometry.overwritten());
+    search.stage(batch.source(), known, impl, geometry.overwritten());
     Encoded::operator=(test::encodedBy(search, queries.size(),
                                        [&](const gpu::Commands& commands) { geometry.record(commands, impl); }));
     gpu::Submission submission(device, false);

@@ -23,7 +23,7 @@ void printWork(const Device& device, const char* name, const tools::Workload& wo
   }
   ContactSubmitter submitter(device.impl(), copy, false, {.countsWork = true});
   std::vector<StageTime> stages;
-  submitter.submit(batch, scene);
+  submitter.submit(batch.source(), scene);
   submitter.collect(stages, {});
   const gpu::SearchCounts& counts = submitter.counts();
   const double queries = batch.count();

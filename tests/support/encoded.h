@@ -42,7 +42,7 @@ inline Encoded encodedBy(
 inline Encoded encodedBy(GpuScene& copy, const Scene::Impl& scene, const SearchPlan& batch) {
   ContactPass search(device().impl(), copy, {});
   const std::vector<Result> known(batch.count());
-  copy.commit(search.stage(batch, known, scene));
+  copy.commit(search.stage(batch.source(), known, scene));
   return encodedBy(search, batch.count());
 }
 

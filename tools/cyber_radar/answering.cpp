@@ -51,8 +51,9 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
   const double start = now();
   for (const Batch& batch : batches) {
     show(batch.scene);
-    const double begun = now();
+    const double begun = now(), computed = threadSeconds();
     Answers found = answerer_.run(batch.queries, batch.mode);
+    stats_.hostSeconds += threadSeconds() - computed;
     if (batch.mode == AnswerMode::reference) found.stats.stages = {{"reference", 1e3 * (now() - begun)}};
     for (size_t i = 0; i < found.results.size(); ++i) {
       const Result& result = found.results[i];

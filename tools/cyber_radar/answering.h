@@ -20,6 +20,7 @@ struct AnsweringOptions : AnswererOptions {
 /// What answering took.
 struct AnsweringStats {
   double ms = 0;                       ///< from handing over the queries to having the answers, scene changes included
+  double hostSeconds = 0;              ///< what the calling thread computed in the engine's calls: all but waiting
   uint64_t batches = 0;                ///< calls of the engine's
   uint64_t pairs = 0;                  ///< pairs of triangles or leaves that were looked at, or were proposed by pixels
   uint64_t cpuPairs = 0;               ///< those of them decided on the CPU

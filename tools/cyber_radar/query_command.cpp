@@ -45,6 +45,7 @@ std::string textOf(uint64_t queries, const Answering& answering, const Answering
   stats["setup_ms"] = times.setupMs;
   stats["sweep_ms"] = times.sweepMs;
   stats["write_ms"] = times.writeMs;
+  stats["host_us_per_query"] = queries == 0 ? 0 : 1e6 * pass.hostSeconds / static_cast<double>(queries);
   stats["stages"] = nlohmann::ordered_json::object();
   for (const StageTime& stage : pass.stages) stats["stages"][stage.name] = stage.ms;
   stats["pairs"] = pass.pairs;

@@ -7,6 +7,7 @@ constexpr const char* kAbout = "Measures Cyber Radar itself, and holds it agains
 constexpr const char* kExamples = R"(Try:
   radar-lab chart --extent quick --out DIR  accuracy against speed, mode by mode, in charts
   radar-lab stability --out DIR             every tier against the exact answer, where methods fail
+  radar-lab host                            what a call costs the host, beside the device
   radar-lab hard-cases --family thin --out DIR
                                             such cases as a query file
 
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   Program program("radar-lab", kAbout, kExamples);
   addChartCommand(program);
   addStabilityCommand(program);
+  addHostCommand(program);
   addHardCasesCommand(program);
   return program.main(argc, argv);
 }

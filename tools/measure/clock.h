@@ -20,6 +20,11 @@ inline double now() {
   return 1e-9 * static_cast<double>(readClock(CLOCK_MONOTONIC));
 }
 
+/// Seconds that the calling thread has computed.
+inline double threadSeconds() {
+  return 1e-9 * static_cast<double>(readClock(CLOCK_THREAD_CPUTIME_ID));
+}
+
 /// What some work took, seconds.
 struct Lap {
   double process = 0;  ///< computed by all threads of the process

@@ -1,7 +1,6 @@
 #include "contact/pass.h"
 
 #include <algorithm>
-#include <thread>
 
 #include "gpu/api.h"
 #include "gpu/barrier.h"
@@ -16,19 +15,6 @@ using gpu::bytesOf;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-// Tasks, of 20 bytes in two lists: at most, in addition to two per search. The search makes do with less than what all
-// stacks hold (search.glsl).
-constexpr uint32_t kMostTasks = 1u << 18;
-// Lanes that search at once on a GPU, with queues of 320 bytes each: for each search, at least, and at most; of very
-// many searches, a quarter. An NVIDIA H200 searched 256 times in 0.79 ms with 2,048 lanes, and in 1.2 with 65,536.
-constexpr uint32_t kLanes = 8, kLeastLanes = 1u << 10, kMostLanes = 1u << 14, kMostOfAll = 1u << 15;
-// Subgroups have no more queues than so many lanes need: smaller ones take more workgroups.
-constexpr uint32_t kLeastGroup = 16;
-// Capacity for candidates, of 24 bytes and 64 as refined pairs, that lists grow to.
-constexpr uint32_t kMostCandidates = 1u << 22;
-// Capacity for unresolved pairs, of 192 bytes: at first per search, and at most in total.
-constexpr uint32_t kUnresolved = 4, kUnresolvedWithClearance = 16, kMostUnresolved = 1u << 20;
-
 // Kernels bind no more than that; all other lists are bounded by their capacities or by those of searches.
 void checkExcluded(const Device::Impl& device, uint64_t count) {
   const uint64_t bytes = count * sizeof(uint32_t), limit = device.properties.limits.maxStorageBufferRange;
@@ -37,35 +23,31 @@ void checkExcluded(const Device::Impl& device, uint64_t count) {
                         " bytes, the device allows " + std::to_string(limit));
 }
 
-// The lanes of a workgroup, which is one subgroup; the capacities of its queues and stacks.
-gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool hasClearances) {
-  const uint32_t lanes = device.subgroupSize;
-  const uint32_t queue = std::max(room.queue != 0 ? room.queue : std::max(8 * lanes, 128u), 6 * lanes);
-  const uint32_t stack = room.stack != 0 ? std::max(room.stack, 4u) : 40;
+// A workgroup is one subgroup.
+gpu::Program searchOf(const Device::Impl& device, const SearchTuning& tuning, bool hasClearances) {
   const gpu::Shader& shader = hasClearances ? shaders::kSearchWithClearance : shaders::kSearch;
-  return {shader, {lanes, queue, stack, room.countsWork ? 1u : 0u}, gpu::Subgroups::full};
+  return {shader,
+          {device.subgroupSize, tuning.queue, tuning.stack, tuning.countsWork ? 1u : 0u, tuning.objectSteps,
+           tuning.nodeSteps, tuning.few, tuning.leafBatch, tuning.split},
+          gpu::Subgroups::full};
 }
 
 }  // namespace
 
-uint64_t usualCandidates(uint64_t searches) {
-  return std::max({std::min(searches << 11, uint64_t{1} << 15), std::min(64 * searches, uint64_t{3} << 15),
-                   std::min(12 * searches, uint64_t{3} << 16), 2 * searches});
-}
-
 std::vector<gpu::Program> ContactPass::programs(const Device::Impl& device) {
+  const SearchTuning tuning = tunedFor(device, {});
   std::vector<gpu::Program> all = PairSolver::programs(device);
-  all.insert(all.begin(), {searchOf(device, {}, false), searchOf(device, {}, true), shaders::kEncode, shaders::kCollect,
-                           shaders::kFilter});
+  all.insert(all.begin(), {searchOf(device, tuning, false), searchOf(device, tuning, true), shaders::kEncode,
+                           shaders::kCollect, shaders::kFilter});
   return all;
 }
 
-ContactPass::ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchRoom& room)
+ContactPass::ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchTuning& tuning)
     : device_(&owner.device()),
       scene_(scene),
-      room_(room),
-      search_(searchOf(owner, room, false)),
-      searchWithClearance_(searchOf(owner, room, true)),
+      tuning_(tunedFor(owner, tuning)),
+      search_(searchOf(owner, tuning_, false)),
+      searchWithClearance_(searchOf(owner, tuning_, true)),
       // Rounds alternate between two lists of tasks.
       run_(owner, {shaders::kEncode, search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter}),
       upload_(owner),
@@ -77,42 +59,21 @@ ContactPass::ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchR
       queues_(owner, "search queues", BufferDomain::device),
       candidates_(owner, "candidate pairs", BufferDomain::device),
       solver_(owner, scene) {
-  if (room_.budget == 0) room_.budget = kMostBudget;
-}
-
-uint32_t ContactPass::groupsFor(uint32_t searches) const {
-  if (room_.groups != 0) return room_.groups;
-  if (device_->runsOnCpu()) return std::max(32u, searches / 256);
-  const uint64_t lanes =
-      std::max<uint64_t>(std::clamp(uint64_t{kLanes} * searches, uint64_t{kLeastLanes}, uint64_t{kMostLanes}),
-                         std::min(searches / 4, kMostOfAll));
-  return static_cast<uint32_t>(lanes / std::max(device_->subgroupSize, kLeastGroup));
-}
-
-uint32_t ContactPass::widthFor(uint32_t searches) const {
-  if (room_.width != 0) return room_.width;
-  // On the CPU, as many lanes are at work as threads times the width of a vector.
-  const uint32_t groups =
-      device_->runsOnCpu() ? std::max(1u, std::thread::hardware_concurrency()) : groupsFor(searches);
-  return 2 * groups * device_->subgroupSize;
+  if (tuning_.budget == 0) tuning_.budget = kMostBudget;
 }
 
 void ContactPass::reserveLists(uint32_t searches, uint32_t results) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
-  const uint64_t all = uint64_t{groupsFor(searches)} * device_->subgroupSize * (search_.constants[2] + 1);
-  const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, uint64_t{kMostTasks} + searches);
-  const uint64_t candidates =
-      room_.candidates != 0 ? room_.candidates : std::max<uint64_t>(usualCandidates(searches), wantedCandidates_);
-  const uint32_t usual = (hasClearances_ ? kUnresolvedWithClearance : kUnresolved) * searches;
-  const uint32_t unresolved =
-      room_.unresolved != 0 ? room_.unresolved : std::clamp(std::max(usual, wantedUnresolved_), 4096u, kMostUnresolved);
-  taskRoom_ = static_cast<uint32_t>(std::min(searches + tasks, limit / sizeof(gpu::SearchTask)));
+  const uint64_t tasks = taskRoomFor(tuning_, *device_, searches),
+                 candidates = candidateRoomFor(tuning_, searches, wantedCandidates_);
+  taskRoom_ = static_cast<uint32_t>(std::min(tasks, limit / sizeof(gpu::SearchTask)));
   candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::RefinedPair)));
   tasks_.reserve(taskRoom_);
   spilled_.reserve(taskRoom_);
-  queues_.reserve(groupsFor(searches) * 2 * search_.constants[1]);
+  queues_.reserve(groupsFor(tuning_, *device_, searches) * 2 * tuning_.queue);
   candidates_.reserve(candidateRoom_);
-  solver_.reserve(searches, results, candidateRoom_, unresolved);
+  solver_.reserve(searches, results, candidateRoom_,
+                  unresolvedRoomFor(tuning_, searches, hasClearances_, wantedUnresolved_));
 }
 
 void ContactPass::reserve(uint32_t searches, uint32_t results, uint32_t excluded) {
@@ -201,10 +162,10 @@ void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, boo
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = scene_.buffers();
   // What is waiting when the budget ends takes more iterations then.
-  const uint32_t budget = hasClearances_ ? std::max(room_.budget / 2, 1u) : room_.budget;
+  const uint32_t budget = hasClearances_ ? std::max(tuning_.budget / 2, 1u) : tuning_.budget;
   const Array<SearchTask>&from = round % 2 == 0 ? tasks_ : spilled_, &to = round % 2 == 0 ? spilled_ : tasks_;
-  run_(commands, hasClearances_ ? searchWithClearance_ : search_, groupsFor(searchCount_),
-       SearchPush{round, taskRoom_, candidateRoom_, budget, widthFor(searchCount_)},
+  run_(commands, hasClearances_ ? searchWithClearance_ : search_, groupsFor(tuning_, *device_, searchCount_),
+       SearchPush{round, taskRoom_, candidateRoom_, budget, widthFor(tuning_, *device_, searchCount_)},
        {{kSlotMeshNodes, scene.meshNodes},
         {kSlotObjectNodes, scene.objectNodes},
         {kSlotVertices, scene.vertices},
@@ -246,7 +207,7 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
 bool ContactPass::learn(const gpu::SearchCounts& counts) {
   if (counts.unresolved > solver_.unresolvedRoom()) wantedUnresolved_ = 2 * counts.unresolved;
   // Searches without room ended early, so their actual need is unknown.
-  if (counts.candidates <= candidateRoom_ || candidateRoom_ >= kMostCandidates || room_.candidates != 0) return false;
+  if (counts.candidates <= candidateRoom_ || candidateRoom_ >= kMostCandidates || tuning_.candidates != 0) return false;
   wantedCandidates_ = std::min(4 * candidateRoom_, kMostCandidates);
   return true;
 }

@@ -1,38 +1,18 @@
 // Records the contact tier into any command buffer: rounds of the search, then the answers. Owns its buffers.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <span>
 
 #include "contact/pair_solver.h"
 #include "contact/search_plan.h"
+#include "contact/tuning.h"
 
 namespace radar {
 
-/// Capacities of a search's lists and workgroups, and its division into dispatches. Zero: chosen for the device and the
-/// batch.
-struct SearchRoom {
-  uint32_t tasks = 0;       ///< in addition to one per search
-  uint32_t candidates = 0;  ///< for all searches together
-  uint32_t unresolved = 0;  ///< unresolved pairs; all of a search's pairs are listed, or none
-  uint32_t groups = 0;      ///< workgroups per round
-  uint32_t budget = 0;      ///< iterations of a workgroup per round
-  uint32_t width = 0;       ///< below this number, tasks are split early
-  uint32_t queue = 0;       ///< waiting pairs per workgroup
-  uint32_t stack = 0;       ///< entries per lane
-  bool countsWork = false;  ///< SearchCounts::done and steps
-  /// The time, in place of the machine's: then the device is hurried (Pace), even if it runs on the CPU.
-  std::function<std::chrono::steady_clock::time_point()> now;
-};
-
-/// Candidates for which there is room unless told otherwise: see Capacity. Searches have some 10 among boxes, 30 among
-/// meshes, hundreds where shapes interlock.
-uint64_t usualCandidates(uint64_t searches);
-
 class ContactPass {
  public:
-  ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchRoom& room);
+  ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchTuning& tuning);
 
   /// Makes room for this many searches and known answers; stage() then allocates nothing for batches up to this size,
   /// but for changes of the scene.
@@ -65,8 +45,10 @@ class ContactPass {
   void record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast);
   /// Stages the continuation of the search, once the device has finished and left `counts`.
   void stageMore(const gpu::SearchCounts& counts);
+  /// Of a submission.
+  uint32_t rounds() const { return tuning_.rounds; }
   /// Iterations of a workgroup in each round recorded from now on.
-  void setBudget(uint32_t iterations) { room_.budget = iterations; }
+  void setBudget(uint32_t iterations) { tuning_.budget = iterations; }
   /// Tasks left over by the rounds recorded last.
   uint32_t tasksLeft(const gpu::SearchCounts& counts) const { return counts.rounds[rounds_].tasks; }
 
@@ -86,21 +68,14 @@ class ContactPass {
   /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.
   bool learn(const gpu::SearchCounts& counts);
 
-  /// Below lavapipe's limit (shaders/contact/search.glsl), with room for what is waiting when the budget ends.
-  static constexpr uint32_t kMostBudget = 40'000;
-  /// So that a round is brief on any GPU.
-  static constexpr uint32_t kBriefBudget = 1000;
-
  private:
   GpuScene::Staged beginStaging(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next);
   void recordRound(const gpu::Commands& commands, uint32_t round, bool isLast);
   void reserveLists(uint32_t searches, uint32_t results);
-  uint32_t groupsFor(uint32_t searches) const;
-  uint32_t widthFor(uint32_t searches) const;
 
   const Device::Impl* device_;
   GpuScene& scene_;
-  SearchRoom room_;
+  SearchTuning tuning_;  ///< from tunedFor(), with a budget
   gpu::Program search_, searchWithClearance_;
   gpu::Passes run_;
   gpu::Upload upload_;

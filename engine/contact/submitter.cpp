@@ -9,8 +9,6 @@ namespace radar {
 
 namespace {
 
-// Light searches end in the first, and what follows costs them a few microseconds.
-constexpr uint32_t kRounds = 8;
 // A batch whose searches take more submissions than this makes no progress.
 constexpr uint32_t kMostSubmissions = 1u << 20;
 
@@ -49,13 +47,14 @@ gpu::Buffer readbackFor(const gpu::Owner& owner) {
 
 }  // namespace
 
-ContactSubmitter::ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchRoom& room)
+ContactSubmitter::ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps,
+                                   const SearchTuning& tuning)
     : scene_(scene),
-      now_(room.now ? room.now : std::chrono::steady_clock::now),
-      pace_(room.budget == 0 && (room.now || !owner.device().runsOnCpu()),
-            room.budget != 0 ? room.budget : ContactPass::kMostBudget),
+      now_(tuning.now ? tuning.now : std::chrono::steady_clock::now),
+      pace_(tuning.budget == 0 && (tuning.now || !owner.device().runsOnCpu()),
+            tuning.budget != 0 ? tuning.budget : kMostBudget),
       submission_(owner, timestamps),
-      pass_(owner, scene, room),
+      pass_(owner, scene, tuning),
       readbacks_{readbackFor(owner), readbackFor(owner)} {}
 
 const gpu::SearchCounts& ContactSubmitter::counts() const {
@@ -69,7 +68,7 @@ void ContactSubmitter::recordAndSubmit() {
   const auto stage = [this](const char* name) { submission_.stage(name); };
   pass_.recordUpload(commands, stage);
   if (submissions_ == 0) pass_.recordEncoding(commands, stage);
-  pass_.record(commands, stage, kRounds, false);
+  pass_.record(commands, stage, pass_.rounds(), false);
   gpu::computeWriteToCopy(commands);
   stage("readback");
   const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};

@@ -27,7 +27,7 @@ class Pace {
   void took(double ms);
 
   static constexpr double kWantedMs = 20;
-  static constexpr uint32_t kFirst = ContactPass::kBriefBudget, kLeast = 16;
+  static constexpr uint32_t kFirst = kBriefBudget, kLeast = 16;
 
  private:
   uint32_t most_;
@@ -37,7 +37,7 @@ class Pace {
 
 class ContactSubmitter {
  public:
-  ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchRoom& room);
+  ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchTuning& tuning);
 
   /// Submits the batch and returns without waiting; call collect() next.
   void submit(const SearchSource& batch, const Scene::Impl& scene);
@@ -54,7 +54,7 @@ class ContactSubmitter {
   void recordAndSubmit();
 
   GpuScene& scene_;
-  decltype(SearchRoom::now) now_;  ///< the machine's clock, if there is no other
+  decltype(SearchTuning::now) now_;  ///< the machine's clock, if there is no other
   Pace pace_;
   gpu::Submission submission_;
   ContactPass pass_;

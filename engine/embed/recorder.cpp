@@ -15,10 +15,10 @@ namespace {
 
 // Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 2;
-SearchRoom roomFor(const Capacity& capacity, const Device::Impl& device) {
+SearchTuning tuningFor(const Capacity& capacity, const Device::Impl& device) {
   return {.candidates = capacity.candidates,
           .unresolved = capacity.unresolvedPairs,
-          .budget = device.runsOnCpu() ? ContactPass::kMostBudget : ContactPass::kBriefBudget};
+          .budget = device.runsOnCpu() ? kMostBudget : kBriefBudget};
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ Recorder::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, std:
       capacity(completed(given, openDevice)),
       copy(std::move(ownCopy)),
       geometry(owner, *copy),
-      pass(owner, *copy, roomFor(capacity, openDevice)),
+      pass(owner, *copy, tuningFor(capacity, openDevice)),
       gathers(owner, capacity.searches),
       readback(owner, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
   const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from

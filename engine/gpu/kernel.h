@@ -33,7 +33,7 @@ enum class Subgroups {
 /// A shader, the values of its specialization constants 0, 1, ... (0 unless given), and its subgroups.
 struct Program {
   /// Those of the shaders; the next is for shaders/shared/divide.glsl.
-  static constexpr size_t kMostConstants = 4;
+  static constexpr size_t kMostConstants = 9;
 
   constexpr Program(const Shader& its, const std::array<uint32_t, kMostConstants>& values = {},
                     Subgroups kind = Subgroups::any)

@@ -98,7 +98,7 @@ void Worker::makeSweep(Lane& lane) {
     if (!gpu::isOutOfMemory(error) || queue_.leave(number_)) throw;
     SweeperOptions onCpu = options_;
     onCpu.cpuBatch = kAnyBatch;
-    lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, onCpu, copy_, SearchRoom{}, false);
+    lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, onCpu, copy_, SearchTuning{}, false);
     lane.isMakeshift = true;
   }
 }

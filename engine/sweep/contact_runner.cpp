@@ -18,9 +18,6 @@ namespace radar {
 
 namespace {
 
-// Searches of one submission, at most: what a device has in hand while the next ones are planned. An NVIDIA H200 takes
-// half as long for 131,072 searches in two submissions as in eight, each of which ends with few lanes at work.
-constexpr size_t kMostSearches = 1u << 16, kMostSearchesOnCpu = 1u << 14;
 // Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
 // the batch (docs/performance.md). On another, a submission takes the time in which a CPU answers some queries: an
 // estimate, as no such device has been measured.
@@ -31,9 +28,9 @@ constexpr size_t kWorthThread = 8192;
 constexpr size_t kMostDecided = 256;
 
 // Of one submission: what a texel buffer of their sensors holds.
-size_t mostSearchesOf(const Device::Impl& device) {
-  return std::min<size_t>(device.runsOnCpu() ? kMostSearchesOnCpu : kMostSearches,
-                          device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
+size_t mostSearchesOf(const Device::Impl& device, const SearchTuning& tuning) {
+  return std::min(tunedFor(device, tuning).searches,
+                  device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
 }
 
 uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
@@ -49,14 +46,14 @@ bool isMissing(const Result& result) {
 }  // namespace
 
 ContactRunner::ContactRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options,
-                             GpuScene& resident, const SearchRoom& room, bool needsProof)
+                             GpuScene& resident, const SearchTuning& tuning, bool needsProof)
     : owner_(owner),
       device_(owner),
       scene_(scene),
       options_(options),
       resident_(resident),
-      room_(room),
-      mostSearches_(mostSearchesOf(owner)),
+      tuning_(tuning),
+      mostSearches_(mostSearchesOf(owner, tuning)),
       cpu_(Tier::contact, options.cpuThreads) {
   if (needsProof && !isOnCpu()) requireProof(owner);
 }
@@ -158,7 +155,7 @@ void ContactRunner::submit(Flight& flight) {
   const std::optional<SearchAnswers> found = wait(flight, last);
   bool isTooLarge = false;
   const bool isSubmitted = attempt(flight, planned_.groups(), [&] {
-    if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, room_);
+    if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, tuning_);
     try {
       const Clock::time_point begun = Clock::now();
       const Scene::Impl& scene = scene_.impl();

@@ -12,7 +12,7 @@ class ContactRunner {
  public:
   /// `needsProof`: that of the device (sweep/proof.h), unless isOnCpu().
   ContactRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
-                const SearchRoom& room, bool needsProof);
+                const SearchTuning& tuning, bool needsProof);
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
   bool isOnCpu() const;
@@ -46,7 +46,7 @@ class ContactRunner {
   const Scene& scene_;
   const SweeperOptions options_;
   GpuScene& resident_;
-  const SearchRoom room_;
+  const SearchTuning tuning_;
   const size_t mostSearches_;                  ///< per submission
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   SearchList planned_;                         ///< for the next submission

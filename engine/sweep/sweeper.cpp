@@ -10,13 +10,13 @@
 namespace radar {
 
 Sweeper::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, const SweeperOptions& given,
-                    std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room, bool needsProof)
+                    std::shared_ptr<GpuScene> sceneCopy, const SearchTuning& tuning, bool needsProof)
     : owner(gpu::Owner::counted(openDevice)),
       device(openDevice),
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
-      contactRunner(owner, scene, given, *copy, room, needsProof) {}
+      contactRunner(owner, scene, given, *copy, tuning, needsProof) {}
 
 SampledRunner& Sweeper::Impl::sampled() {
   if (!sampledRunner) {

@@ -10,7 +10,7 @@ struct Sweeper::Impl {
   /// `copy` may be shared with other instances of the same device, scene and thread; then call sync() after changes of
   /// the scene, while nothing is running on the device. `needsProof`: see ContactRunner.
   Impl(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
-       const SearchRoom& room = {}, bool needsProof = true);
+       const SearchTuning& tuning = {}, bool needsProof = true);
 
   /// Returns the error if memory does not suffice, or the device is lost: then each batch tries again, and answers as
   /// run() says.

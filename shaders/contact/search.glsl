@@ -28,6 +28,15 @@ layout(constant_id = 0) const uint kLanes = 32;
 layout(constant_id = 1) const uint kQueue = 256;     // pairs in each queue: at least 6 times the lanes
 layout(constant_id = 2) const uint kStack = 40;      // entries of a lane: at least 4
 layout(constant_id = 3) const bool kCountsWork = false;
+// Iterations of a loop over nodes before the queues are checked.
+layout(constant_id = 4) const uint kObjectSteps = 16;
+layout(constant_id = 5) const uint kNodeSteps = 24;
+// A loop goes on only if at least this many lanes have work in it; otherwise all lanes leave it to fetch work.
+layout(constant_id = 6) const uint kFew = 16;
+// Number of leaf pairs from which on their triangles are tested.
+layout(constant_id = 7) const uint kLeafBatch = 64;
+// Budget while there are too few tasks for the device, so that they are soon split into more.
+layout(constant_id = 8) const uint kSplitBudget = 48;
 
 // Other workgroups lower what is here. To have missed that costs time only.
 layout(scalar, binding = kSlotStates) coherent restrict buffer States { SearchState states[]; };
@@ -56,11 +65,6 @@ float clearanceOf(uint search) { return 0.0; }
 #else
 const uint kClearanceIterations = 0;
 #endif
-
-// Number of leaf pairs from which on their triangles are tested.
-const uint kLeafBatch = kQueue / 4;
-// Budget while there are too few tasks for the device, so that they are soon split into more.
-const uint kSplitBudget = 48;
 
 // The same in all lanes.
 uint work = 0;

@@ -1,10 +1,5 @@
 // The lanes' walks: down the tree over objects, then down both meshes' trees.
 
-// A loop goes on only if at least this many lanes have work in it; otherwise all lanes leave it to fetch work.
-const uint kFew = (kLanes + 1) / 2;
-// Iterations of a loop over nodes before the queues are checked.
-const uint kObjectSteps = 16, kNodeSteps = 24;
-
 // Of a lane.
 MeshPair meshes;
 const MeshPair kNoMeshes = MeshPair(mat3(0.0), mat3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0),

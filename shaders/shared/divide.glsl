@@ -3,7 +3,7 @@
 #ifndef RADAR_DIVIDE_GLSL
 #define RADAR_DIVIDE_GLSL
 
-layout(constant_id = 4) const bool kDivisionIsRounded = true;
+layout(constant_id = 9) const bool kDivisionIsRounded = true;
 
 uint exponentField(double x) { return unpackDouble2x32(x).y >> 20 & 0x7ffu; }
 

@@ -16,10 +16,12 @@
 
 namespace radar {
 
-std::ostream& operator<<(std::ostream& out, const SearchRoom& room) {
+std::ostream& operator<<(std::ostream& out, const SearchTuning& room) {
   return out << "tasks " << room.tasks << ", candidates " << room.candidates << ", unresolved " << room.unresolved
              << ", groups " << room.groups << ", budget " << room.budget << ", width " << room.width << ", queue "
-             << room.queue << ", stack " << room.stack;
+             << room.queue << ", stack " << room.stack << ", searches " << room.searches << ", rounds " << room.rounds
+             << ", split " << room.split << ", steps " << room.objectSteps << " and " << room.nodeSteps << ", few "
+             << room.few << ", leaf batch " << room.leafBatch;
 }
 
 }  // namespace radar
@@ -34,7 +36,7 @@ using test::differenceOf;
 /// Searches on the device, whatever the size of the batch.
 class DeviceSearch {
  public:
-  explicit DeviceSearch(const Scene& scene, const SearchRoom& room = {})
+  explicit DeviceSearch(const Scene& scene, const SearchTuning& room = {})
       : sweeper_(test::device().impl(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
                  false) {}
 
@@ -63,10 +65,10 @@ TEST_CASE("the answers have the same bits with the smallest lists and in the sho
   const std::string family = GENERATE("interlocking", "lattice", "soup");
   const test::Case batch = familyOf(family);
   const std::vector<Result> roomy = DeviceSearch(batch.scene).run(batch.queries).results;
-  SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
-                             SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
-                             SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
-                             SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
+  SearchTuning room = GENERATE(SearchTuning{.tasks = 1}, SearchTuning{.candidates = 1}, SearchTuning{.unresolved = 1},
+                               SearchTuning{.groups = 1}, SearchTuning{.budget = 1}, SearchTuning{.budget = 17},
+                               SearchTuning{.groups = 3, .budget = 5, .width = 1'000'000},
+                               SearchTuning{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
   std::tie(room.queue, room.stack) = GENERATE(std::pair{0u, 0u}, std::pair{1u, 4u}, std::pair{0u, 7u});
   CAPTURE(family, room);
   DeviceSearch narrow(batch.scene, room);
@@ -81,6 +83,21 @@ TEST_CASE("the answers have the same bits with the smallest lists and in the sho
   if (few && room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(answers.stats.cpuQueries == 0);
 }
 
+TEST_CASE("the answers have the same bits with the least and the most of every number that shapes the search",
+          "[subgroups]") {
+  const std::string family = GENERATE("interlocking", "soup");
+  const test::Case batch = familyOf(family);
+  const std::vector<Result> usual = DeviceSearch(batch.scene).run(batch.queries).results;
+  const SearchTuning tuning =
+      GENERATE(SearchTuning{.objectSteps = 1, .nodeSteps = 1}, SearchTuning{.objectSteps = 200, .nodeSteps = 300},
+               SearchTuning{.few = 1}, SearchTuning{.few = 1000}, SearchTuning{.leafBatch = 1},
+               SearchTuning{.leafBatch = 1'000'000}, SearchTuning{.width = 1'000'000, .split = 1},
+               SearchTuning{.width = 1'000'000, .split = 10'000}, SearchTuning{.rounds = 1, .budget = 40},
+               SearchTuning{.rounds = 1000, .budget = 40}, SearchTuning{.searches = 3});
+  CAPTURE(family, tuning);
+  CHECK(differenceOf(DeviceSearch(batch.scene, tuning).run(batch.queries).results, usual) == "");
+}
+
 TEST_CASE("workgroups that could spill more than there is room for spill less, and no task is lost", "[subgroups]") {
   // Rings on pegs: very many tasks, as each is split early.
   const test::Case batch = test::caseOf(
@@ -90,7 +107,7 @@ TEST_CASE("workgroups that could spill more than there is room for spill less, a
   const uint32_t all = 41 * test::device().impl().subgroupSize;
   for (const uint32_t groups : {2u, 8u}) {
     CAPTURE(groups);
-    const SearchRoom room{.tasks = groups * all, .candidates = 1u << 17, .groups = 64, .width = 1'000'000};
+    const SearchTuning room{.tasks = groups * all, .candidates = 1u << 17, .groups = 64, .width = 1'000'000};
     const Answers answers = DeviceSearch(batch.scene, room).run(batch.queries);
     CHECK(differenceOf(answers.results, roomy.results) == "");
     CHECK(answers.stats.cpuQueries == roomy.stats.cpuQueries);

@@ -7,6 +7,7 @@ namespace radar::tools {
 
 void addChartCommand(Program& program);
 void addStabilityCommand(Program& program);
+void addTuneCommand(Program& program);
 void addHostCommand(Program& program);
 void addHardCasesCommand(Program& program);
 

@@ -8,6 +8,7 @@ constexpr const char* kExamples = R"(Try:
   radar-lab chart --extent quick --out DIR  accuracy against speed, mode by mode, in charts
   radar-lab stability --out DIR             every tier against the exact answer, where methods fail
   radar-lab host                            what a call costs the host, beside the device
+  radar-lab tune                            what the search is fastest with on a device
   radar-lab hard-cases --family thin --out DIR
                                             such cases as a query file
 
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   addChartCommand(program);
   addStabilityCommand(program);
   addHostCommand(program);
+  addTuneCommand(program);
   addHardCasesCommand(program);
   return program.main(argc, argv);
 }

@@ -45,8 +45,6 @@ class ContactPass {
   void record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast);
   /// Stages the continuation of the search, once the device has finished and left `counts`.
   void stageMore(const gpu::SearchCounts& counts);
-  /// Of a submission.
-  uint32_t rounds() const { return tuning_.rounds; }
   /// Iterations of a workgroup in each round recorded from now on.
   void setBudget(uint32_t iterations) { tuning_.budget = iterations; }
   /// Tasks left over by the rounds recorded last.

@@ -39,6 +39,10 @@ void Pace::took(double ms) {
   }
 }
 
+void Rounds::took(uint32_t rounds) {
+  if (learns_) count_ = rounds > count_ ? most_ : std::max((rounds + 1) / 2 * 2, count_ - 2);
+}
+
 namespace {
 
 gpu::Buffer readbackFor(const gpu::Owner& owner) {
@@ -53,6 +57,7 @@ ContactSubmitter::ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, boo
       now_(tuning.now ? tuning.now : std::chrono::steady_clock::now),
       pace_(tuning.budget == 0 && (tuning.now || !owner.device().runsOnCpu()),
             tuning.budget != 0 ? tuning.budget : kMostBudget),
+      rounds_(tunedFor(owner, tuning).rounds, tuning.rounds == 0),
       submission_(owner, timestamps),
       pass_(owner, scene, tuning),
       readbacks_{readbackFor(owner), readbackFor(owner)} {}
@@ -68,7 +73,7 @@ void ContactSubmitter::recordAndSubmit() {
   const auto stage = [this](const char* name) { submission_.stage(name); };
   pass_.recordUpload(commands, stage);
   if (submissions_ == 0) pass_.recordEncoding(commands, stage);
-  pass_.record(commands, stage, pass_.rounds(), false);
+  pass_.record(commands, stage, rounds_.count(), false);
   gpu::computeWriteToCopy(commands);
   stage("readback");
   const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
@@ -96,6 +101,9 @@ void ContactSubmitter::wait() {
 SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages, const std::stop_token& stop) {
   wait();
   submission_.addTimes(stages);
+  uint32_t rounds = 0;
+  while (rounds <= rounds_.count() && counts().rounds[rounds].tasks != 0) ++rounds;
+  rounds_.took(rounds);
   while (counts().broken == 0 && pass_.tasksLeft(counts()) != 0) {
     if (submissions_ == kMostSubmissions) throw Error(Error::Kind::internal, "the contact search makes no progress");
     throwIfStopped(stop);

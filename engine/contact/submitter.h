@@ -35,6 +35,21 @@ class Pace {
   uint32_t budget_;
 };
 
+/// How many rounds a submission records: each costs its dispatches, though nothing may be left to do; too few cost
+/// another submission. As many as batches have taken lately.
+class Rounds {
+ public:
+  /// `most`: and at first. Unless it learns, always.
+  Rounds(uint32_t most, bool learns) : most_(most), count_(most), learns_(learns) {}
+  uint32_t count() const { return count_; }
+  /// A batch was done after so many rounds; more than count(): it was not, with these.
+  void took(uint32_t rounds);
+
+ private:
+  uint32_t most_, count_;
+  bool learns_;
+};
+
 class ContactSubmitter {
  public:
   ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchTuning& tuning);
@@ -56,6 +71,7 @@ class ContactSubmitter {
   GpuScene& scene_;
   decltype(SearchTuning::now) now_;  ///< the machine's clock, if there is no other
   Pace pace_;
+  Rounds rounds_;
   gpu::Submission submission_;
   ContactPass pass_;
   std::array<gpu::Buffer, 2> readbacks_;  ///< counts, then results: those of the last batch, and of the one before

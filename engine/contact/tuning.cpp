@@ -12,7 +12,7 @@ namespace {
 // Searches of one submission, at most: what a device has in hand while the next ones are listed. An NVIDIA H200 takes
 // half as long for 131,072 searches in two submissions as in eight, each of which ends with few lanes at work.
 constexpr uint32_t kSearches = 1u << 16, kSearchesOnCpu = 1u << 14;
-// Light searches end in the first, and what follows costs them a few microseconds.
+// At first, and when these did not suffice (Rounds).
 constexpr uint32_t kRounds = 8;
 // Tasks, of 20 bytes in two lists: at most, in addition to two per search. The search makes do with less than what all
 // stacks hold (search.glsl).

@@ -18,7 +18,7 @@ struct SearchTuning {
   uint32_t unresolved = 0;  ///< unresolved pairs; all of a search's pairs are listed, or none
   // Division.
   uint32_t searches = 0;  ///< of a submission, at most
-  uint32_t rounds = 0;    ///< of a submission; an even number up to gpu::kMostRounds
+  uint32_t rounds = 0;    ///< of each submission; an even number up to gpu::kMostRounds
   uint32_t groups = 0;    ///< workgroups per round
   uint32_t budget = 0;    ///< iterations of a workgroup per round
   uint32_t width = 0;     ///< below this number, tasks are split early:

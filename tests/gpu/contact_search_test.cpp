@@ -4,6 +4,7 @@
 #include <ostream>
 #include <tuple>
 
+#include "contact/submitter.h"
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
@@ -96,6 +97,36 @@ TEST_CASE("the answers have the same bits with the least and the most of every n
                SearchTuning{.rounds = 1000, .budget = 40}, SearchTuning{.searches = 3});
   CAPTURE(family, tuning);
   CHECK(differenceOf(DeviceSearch(batch.scene, tuning).run(batch.queries).results, usual) == "");
+}
+
+TEST_CASE("submissions record as many rounds as batches have taken lately, and all once these do not suffice") {
+  Rounds rounds(8, true);
+  for (const uint32_t expected : {6u, 4u, 2u, 2u}) {
+    rounds.took(1);
+    CHECK(rounds.count() == expected);
+  }
+  rounds.took(3);
+  CHECK(rounds.count() == 8);
+  rounds.took(5);
+  CHECK(rounds.count() == 6);
+  rounds.took(6);
+  CHECK(rounds.count() == 6);
+  Rounds fixed(4, false);
+  fixed.took(1);
+  CHECK(fixed.count() == 4);
+  fixed.took(5);
+  CHECK(fixed.count() == 4);
+}
+
+TEST_CASE("batches that need more rounds than those before them take further submissions, with the same answers") {
+  const test::Case heavy = test::caseOf(
+      tools::makeWorkload(tools::InterlockingPairs{.kind = tools::Interlocking::ringOnPeg, .sensors = 32}));
+  const std::vector<Result> expected = DeviceSearch(heavy.scene).run(heavy.queries).results;
+  DeviceSearch search(heavy.scene);
+  const Query away{
+      .mesh = heavy.queries[0].mesh, .worldFromMesh = at(0, 0, 1e6), .direction = {0, 0, 1}, .distance = 1};
+  for (int i = 0; i < 4; ++i) CHECK(search.run({&away, 1}).results[0].status == Status::clear);
+  CHECK(differenceOf(search.run(heavy.queries).results, expected) == "");
 }
 
 TEST_CASE("workgroups that could spill more than there is room for spill less, and no task is lost", "[subgroups]") {

@@ -1,6 +1,17 @@
 #include "query/route.h"
 
+#include <atomic>
+
+#include "scene/parallel.h"
+
 namespace radar {
+
+namespace {
+
+// Queries that take as long to validate as a thread to start.
+constexpr size_t kWorthThread = 1u << 14;
+
+}  // namespace
 
 const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRevise) {
   const bool step = isStep(query, scene);
@@ -18,13 +29,24 @@ Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise) {
   return query.hits > 1 || scene.moving > 0 ? Route::searchEach : Route::oneSearch;
 }
 
-void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode, bool areRecorded) {
-  for (size_t i = 0; i < queries.size(); ++i) {
-    std::string wrong = validate(queries[i], scene, mode);
-    const char* what = wrong.empty() && areRecorded ? onlyForCpu(queries[i], scene.impl(), false) : nullptr;
+void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode, bool areRecorded, unsigned threads) {
+  const auto problemOf = [&](const Query& query) {
+    std::string wrong = validate(query, scene, mode);
+    const char* what = wrong.empty() && areRecorded ? onlyForCpu(query, scene.impl(), false) : nullptr;
     if (what != nullptr) wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
-    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
-  }
+    return wrong;
+  };
+  std::atomic<size_t> first = queries.size();  // of those that are wrong
+  parallelFor(queries.size(), kWorthThread, threads, [&](unsigned, size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) {
+      if (problemOf(queries[i]).empty()) continue;
+      for (size_t least = first; i < least && !first.compare_exchange_weak(least, i);) {
+      }
+      return;
+    }
+  });
+  if (first == queries.size()) return;
+  throw Error("query " + std::to_string(first) + ": " + problemOf(queries[first]));
 }
 
 }  // namespace radar

@@ -18,7 +18,8 @@ const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRev
 Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise);
 
 /// Throws Error, naming the first query that breaks its contract or, if they are recorded, that only the CPU answers.
+/// `threads`: at most; 0: one for each core.
 void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode = Mode::contact,
-                  bool areRecorded = false);
+                  bool areRecorded = false, unsigned threads = 1);
 
 }  // namespace radar

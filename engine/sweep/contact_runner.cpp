@@ -63,10 +63,10 @@ bool ContactRunner::isOnCpu() const {
 }
 
 void ContactRunner::begin(Flight& flight) {
-  std::vector<size_t> all(flight.queries.size());
-  std::iota(all.begin(), all.end(), size_t{0});
+  all_.resize(flight.queries.size());
+  std::iota(all_.begin(), all_.end(), size_t{0});
   flight.answers.stats.lost = lost_;
-  plan(flight, all);
+  plan(flight, all_);
   answerLeft(flight);
 }
 
@@ -83,7 +83,8 @@ void ContactRunner::abandon(Flight& flight) noexcept {
   planned_.clear();
   flight.left.clear();
   flight.again.clear();
-  if (std::exchange(flight.submitted, {}).empty()) return;
+  if (submitted_.empty()) return;
+  submitted_.clear();
   try {
     submitter_->wait();
   } catch (const std::exception&) {  // the exception that was first is the one to report
@@ -151,8 +152,9 @@ void ContactRunner::submit(Flight& flight) {
   if (planned_.groups().empty()) return flight.addCpuTime("plan", msSince(flight.encoding));
   flight.addCpuTime("plan", msSince(flight.encoding));
   // The device goes on while the last submission's answers are decoded.
-  const std::vector<SearchGroup> last = std::exchange(flight.submitted, {});
-  const std::optional<SearchAnswers> found = wait(flight, last);
+  last_.swap(submitted_);
+  submitted_.clear();
+  const std::optional<SearchAnswers> found = wait(flight, last_);
   bool isTooLarge = false;
   const bool isSubmitted = attempt(flight, planned_.groups(), [&] {
     if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, tuning_);
@@ -166,9 +168,9 @@ void ContactRunner::submit(Flight& flight) {
       throw;
     }
   });
-  if (isSubmitted) flight.submitted.assign(planned_.groups().begin(), planned_.groups().end());
+  if (isSubmitted) submitted_.assign(planned_.groups().begin(), planned_.groups().end());
   planned_.clear();
-  if (found) decode(flight, *found, last);
+  if (found) decode(flight, *found, last_);
   if (isTooLarge) submitter_.reset();  // its lists may have grown too large
   flight.encoding = Clock::now();
 }
@@ -186,8 +188,9 @@ std::optional<SearchAnswers> ContactRunner::wait(Flight& flight, std::span<const
 }
 
 void ContactRunner::collect(Flight& flight) {
-  const std::vector<SearchGroup> groups = std::exchange(flight.submitted, {});
-  if (const auto found = wait(flight, groups)) decode(flight, *found, groups);
+  last_.swap(submitted_);
+  submitted_.clear();
+  if (const auto found = wait(flight, last_)) decode(flight, *found, last_);
 }
 
 void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span<const SearchGroup> groups) {

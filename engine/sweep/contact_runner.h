@@ -49,6 +49,9 @@ class ContactRunner {
   const SearchTuning tuning_;
   const size_t mostSearches_;                  ///< per submission
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
+  // Of one batch at a time; their memory is used again.
+  std::vector<size_t> all_;
+  std::vector<SearchGroup> submitted_, last_;  ///< searches with the device, and those to decode
   SearchList planned_;                         ///< for the next submission
   cpu::Search cpu_;
   std::string lost_;  ///< as SweepStats::lost

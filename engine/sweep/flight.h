@@ -31,10 +31,9 @@ struct Flight {
   std::stop_token stop;          ///< once requested, runners throw Cancelled
 
   // Mode contact.
-  std::vector<SearchGroup> submitted;  ///< in the last one, until it is collected
-  std::vector<size_t> left;            ///< queries for the CPU
-  std::vector<size_t> again;           ///< queries to repeat, now that the device has room for them
-  Clock::time_point encoding;          ///< since when the next submission is being planned
+  std::vector<size_t> left;    ///< queries for the CPU
+  std::vector<size_t> again;   ///< queries to repeat, now that the device has room for them
+  Clock::time_point encoding;  ///< since when the next submission is being planned
   // Mode sampled.
   std::vector<size_t> drawn;  ///< queries of the last submission, until it is collected
 

@@ -110,7 +110,7 @@ void Sweeper::sync() {
 Answers Sweeper::run(std::span<const Query> queries, Mode mode, const std::stop_token& stop) {
   const FloatEnvironment floats;
   if (mode == Mode::sampled) impl_->device.requireSampled("run()");
-  requireValid(queries, impl_->scene, mode);
+  requireValid(queries, impl_->scene, mode, false, impl_->options.cpuThreads);
   Flight flight(queries, impl_->options.timestamps, stop);
   impl_->begin(flight, mode);
   impl_->finish(flight);

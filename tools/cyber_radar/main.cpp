@@ -9,6 +9,7 @@ constexpr const char* kExamples = R"(Try:
   cyber-radar demo                          teapots among boxes: a table, and a page that shows each flight
   cyber-radar sweep hall.glb robot.ply --direction 1 0 0 --distance 5
                                             one sweep, answered in words
+  cyber-radar info hall.glb                 what a mesh file holds: nodes, sizes, closed or open
   cyber-radar query batch.json --out answers.jsonl
                                             many sweeps from a file, one JSON line each
   cyber-radar merge PART... --out answers.jsonl
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
   Program program("cyber-radar", kAbout, kExamples, kNoDeviceHint);
   addSweepCommand(program);
   addViewCommand(program);
+  addInfoCommand(program);
   addQueryCommand(program);
   addFieldsCommand(program);
   addMergeCommand(program);

@@ -392,6 +392,7 @@ MeshFile GltfReader::read() {
       for (size_t i = children.size(); i > 0; --i) open.push_back(children[i - 1].wholeNumber<uint32_t>());
     });
   }
+  file_.unit = "meter";
   return std::move(file_);
 }
 

@@ -30,7 +30,8 @@ struct MeshFile {
   };
   std::vector<Part> parts;
   std::vector<Node> nodes;  ///< depth-first; those without parts may be missing
-  std::string unit;         ///< of 3MF, if it is not the usual millimetre
+  std::string unit;         ///< of 3MF and glTF
+  bool isOddUnit = false;   ///< of 3MF, not the usual millimetre
 };
 
 /// a b: the pose of what b places in the frame that a places.

@@ -108,7 +108,7 @@ MeshFile openFile(const std::filesystem::path& path, std::vector<std::string>& w
   OddFaces odd;
   for (MeshFile::Part& part : file.parts) splitFaces(path.string(), part, odd);
   const std::string name = printable(path.string());
-  if (!file.unit.empty()) {
+  if (file.isOddUnit) {
     warnings.push_back(name + ": its unit is " + printable(file.unit, 40) +
                        ", not millimeter as usual: its numbers stay as they are");
   }
@@ -235,9 +235,8 @@ void requireTriangles(bool some, const Collector& collected) {
                        counted(collected.lines, "line"));
 }
 
-FileMesh readWholeFile(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+FileMesh wholeOf(const std::filesystem::path& path, const MeshFile& file, std::vector<std::string>& warnings) {
   const std::string name = path.string();
-  const MeshFile file = openFile(path, warnings);
   requireSize(name, file, false);
   Collector collector{name, file};
   for (const MeshFile::Node& node : file.nodes) collector.add(node, node.fileFromNode);
@@ -246,12 +245,8 @@ FileMesh readWholeFile(const std::filesystem::path& path, std::vector<std::strin
   return collector.take(path.filename().string(), warnings);
 }
 
-}  // namespace
-
-Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string>& warnings) {
-  const DefaultFloats floats;
+Assembly assemblyOf(const std::filesystem::path& path, const MeshFile& file, std::vector<std::string>& warnings) {
   const std::string name = path.string();
-  const MeshFile file = openFile(path, warnings);
   requireSize(name, file, true);
   Assembly assembly;
   Collector collector{name, file};
@@ -272,6 +267,25 @@ Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string
   requireTriangles(!assembly.parts.empty(), collector);
   warnOfDropped(collector, warnings);
   return assembly;
+}
+
+}  // namespace
+
+Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  const DefaultFloats floats;
+  return assemblyOf(path, openFile(path, warnings), warnings);
+}
+
+FileContent readContent(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  const DefaultFloats floats;
+  const MeshFile file = openFile(path, warnings);
+  FileContent content{file.unit, wholeOf(path, file, warnings), {}};
+  std::vector<std::string> more;
+  content.assembly = assemblyOf(path, file, more);
+  for (std::string& warning : more) {
+    if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
+  }
+  return content;
 }
 
 const FileMesh& Assembly::meshOf(const std::string& file, const std::string& node) const {
@@ -311,7 +325,7 @@ MeshName splitMeshName(const std::filesystem::path& name) {
 FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings) {
   const DefaultFloats floats;
   const MeshName split = splitMeshName(name);
-  if (!split.node) return readWholeFile(split.file, warnings);
+  if (!split.node) return wholeOf(split.file, openFile(split.file, warnings), warnings);
   FileMesh mesh = readAssembly(split.file, warnings).meshOf(split.file.string(), *split.node);
   mesh.name = name.filename().string();
   return mesh;

@@ -63,4 +63,12 @@ FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& w
 /// Reads a file as an assembly, otherwise as above. Also throws InputError if a node's pose is singular.
 Assembly readAssembly(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
+/// A file read both ways.
+struct FileContent {
+  std::string unit;  ///< of its numbers, as the file or its format says; or empty
+  FileMesh whole;
+  Assembly assembly;
+};
+FileContent readContent(const std::filesystem::path& file, std::vector<std::string>& warnings);
+
 }  // namespace radar::tools

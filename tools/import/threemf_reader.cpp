@@ -167,7 +167,8 @@ ThreeMfReader::Use ThreeMfReader::useFrom(const Attributes& given) const {
 
 void ThreeMfReader::beginModel(const Attributes& given) {
   const auto unit = given.find("unit");
-  if (unit != given.end() && unit->second != "millimeter") result_.unit = unit->second;
+  result_.unit = unit == given.end() ? "millimeter" : unit->second;
+  result_.isOddUnit = result_.unit != "millimeter";
   const auto required = given.find("requiredextensions");
   if (required == given.end()) return;
   Text prefixes(file_, required->second);

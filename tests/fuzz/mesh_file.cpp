@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fuzz/target.h"
+#include "import/mesh_facts.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
 #include "support/scratch_folder.h"
@@ -57,6 +58,7 @@ void run(std::string_view input) {
     return checkMessage(error.what());
   }
   checkMesh(mesh);
+  tools::factsOf(mesh);
   if (name == "a.gltf") return;
   // The parts of an assembly have the same triangles, since no node of the other formats is moved.
   const Assembly assembly = tools::readAssembly(file, warnings);

@@ -97,7 +97,7 @@ std::vector<std::string> seeds() {
  "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0, 0, 1], "D": 8},
  {"id": "q", "scene": 1, "batch": 3, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "exclude": [2], "dir": [0, -0.5, 1],
   "D": 0, "mask": 5, "decide": true, "mode": "sampled", "speed": 2.5, "tolerance": 0.25}]})",
-      head + R"(["a.obj", "b.off", "parts.obj#1", "parts.obj#x z"], "scenes": [], "queries": []})",
+      head + R"([{"file": "a.obj", "scale": 0.001}, "b.off", "parts.obj#1", "parts.obj#x z"], "scenes": [], "queries": []})",
       head +
           R"(["a.obj", "b.off", "parts.obj#1"], "scenes": [{"instances_file": "instances.stl", "motions": [[1, 0, 0, -3]]}],
  "queries": [{"id": "p", "scene": 0, "sensor": [1, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "motion": [0, 0.5, 4], "hits": "all"},
@@ -114,7 +114,7 @@ std::vector<std::string> seeds() {
 constexpr const char* kWords =
     R"("format"~"meshes"~"scenes"~"queries"~"id"~"base"~"instances"~"instances_file"~"assembly"~"masks"~)"
     R"("motions"~"deforms"~"scene"~"batch"~"sensor"~"exclude"~"dir"~"D"~"motion"~"mask"~"decide"~"mode"~"speed"~)"
-    R"("tolerance"~"ignore_leaving"~"slack"~"skip_overlapping"~"hits"~"clearance"~"rotation"~"all"~"sampled"~)"
+    R"("file"~"scale"~"tolerance"~"ignore_leaving"~"slack"~"skip_overlapping"~"hits"~"clearance"~"rotation"~"all"~"sampled"~)"
     R"("contact"~"reference"~"a.obj"~"b.off"~"parts.obj"~"parts.obj#0"~"parts.obj#x"~"instances.stl"~)"
     R"("broken.stl"~"positions.ply"~null~true~false~[~]~{~}~, ~: ~0~-1~1~2~0.5~1e999~1e308~-1e-320~4294967295~)"
     R"(4294967296~18446744073709551615~18446744073709551616~\u0000~\ud800~[0], ~)"

@@ -95,6 +95,13 @@ void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
   if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
 }
 
+/// A mesh file, or a node of one.
+struct MeshSource {
+  std::string name;  ///< as the query file says it
+  std::filesystem::path path;
+  double scale = 1;
+};
+
 class Reader {
  public:
   Reader(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs)
@@ -105,10 +112,11 @@ class Reader {
  private:
   std::string content() const;
   std::filesystem::path pathOf(const JsonValue& value) const;
+  MeshSource sourceOf(const JsonValue& value) const;
   void readMesh(const JsonValue& value);
   void readScene(const JsonValue& scene);
   void readInstances(const JsonValue& scene, SceneSpec& spec);
-  const Assembly& assembly(const std::filesystem::path& file);
+  const Assembly& assembly(const std::filesystem::path& file, double scale);
   void readQuery(const JsonValue& query);
   Instance readInstance(const JsonValue& list) const;
   std::vector<Instance> readInstanceFile(const std::filesystem::path& file);
@@ -124,8 +132,8 @@ class Reader {
   Workload workload_;
   Fingerprint fingerprint_;                   ///< of what is read
   std::vector<std::array<double, 3>> bases_;  ///< of the meshes that the file lists; those of assemblies follow
-  std::map<std::filesystem::path, Assembly> assemblies_;
-  std::map<const Assembly*, uint32_t> firstMesh_;  ///< of the assemblies that scenes place
+  std::map<std::pair<std::filesystem::path, double>, Assembly> assemblies_;  ///< by file and scale
+  std::map<const Assembly*, uint32_t> firstMesh_;                            ///< of the assemblies that scenes place
   std::unordered_set<std::string> sceneIds_, queryIds_;
 };
 
@@ -140,6 +148,15 @@ std::filesystem::path Reader::pathOf(const JsonValue& value) const {
   std::filesystem::path path = file_.parent_path() / value.string();
   outputs_.requireNone(splitMeshName(path).file);
   return path;
+}
+
+MeshSource Reader::sourceOf(const JsonValue& value) const {
+  if (value.json().is_string()) return {value.string(), pathOf(value)};
+  if (!value.json().is_object()) value.expected("a string or an object");
+  requireKnownKeys(value, {"file", "scale"});
+  MeshSource source{value.member("file").string(), pathOf(value.member("file"))};
+  value.ifHas("scale", [&](const JsonValue& scale) { source.scale = scale.number(); });
+  return source;
 }
 
 JsonQueryFile Reader::read() {
@@ -172,21 +189,22 @@ JsonQueryFile Reader::read() {
 }
 
 void Reader::readMesh(const JsonValue& value) {
-  const std::filesystem::path path = pathOf(value);
+  const MeshSource source = sourceOf(value);
   const FileMesh mesh = value.guard([&] {
-    const MeshName split = splitMeshName(path);
-    return split.node ? assembly(split.file).meshOf(split.file.string(), *split.node)
-                      : tools::readMesh(path, warnings_);
+    const MeshName split = splitMeshName(source.path);
+    return split.node ? assembly(split.file, source.scale).meshOf(split.file.string(), *split.node)
+                      : tools::readMesh(source.path, warnings_, source.scale);
   });
   workload_.meshes.push_back(mesh);
   bases_.push_back(mesh.base);
   fingerprint_.add(mesh.base);
-  workload_.meshes.back().name = value.string();
+  workload_.meshes.back().name = source.name;
 }
 
-const Assembly& Reader::assembly(const std::filesystem::path& file) {
-  auto found = assemblies_.find(file);
-  if (found == assemblies_.end()) found = assemblies_.emplace(file, readAssembly(file, warnings_)).first;
+const Assembly& Reader::assembly(const std::filesystem::path& file, double scale) {
+  const std::pair key(file, scale);
+  auto found = assemblies_.find(key);
+  if (found == assemblies_.end()) found = assemblies_.emplace(key, readAssembly(file, warnings_, scale)).first;
   return found->second;
 }
 
@@ -219,8 +237,8 @@ void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
     spec.instances = file.guard([&] { return readInstanceFile(path); });
   } else if (scene.has("assembly")) {
     const JsonValue file = scene.member("assembly");
-    const std::filesystem::path path = pathOf(file);
-    const Assembly& parts = file.guard([&]() -> const Assembly& { return assembly(path); });
+    const MeshSource source = sourceOf(file);
+    const Assembly& parts = file.guard([&]() -> const Assembly& { return assembly(source.path, source.scale); });
     const auto [first, isNew] = firstMesh_.emplace(&parts, static_cast<uint32_t>(workload_.meshes.size()));
     if (isNew) workload_.meshes.insert(workload_.meshes.end(), parts.meshes.begin(), parts.meshes.end());
     for (const Assembly::Part& part : parts.parts) {

@@ -139,6 +139,7 @@ std::array<double, 3> placed(const Transform& pose, const double* p) {
 struct Collector {
   const std::string& name;
   const MeshFile& file;
+  double scale;
   std::vector<double> positions{};
   std::vector<uint32_t> indices{};
   uint64_t points = 0, lines = 0;
@@ -160,11 +161,12 @@ void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, c
   const size_t first = positions.size() / 3, count = part.positions.size() / 3;
   for (size_t i = 0; i < count; ++i) {
     const double* vertex = &part.positions[3 * i];
-    for (const double coordinate : placed(meshFromPart, vertex)) {
+    for (const double unscaled : placed(meshFromPart, vertex)) {
+      const double coordinate = scale * unscaled;
       if (!std::isfinite(static_cast<float>(coordinate))) {
         std::ostringstream problem;
         problem << "expected 3 finite numbers, got " << vertex[0] << " " << vertex[1] << " " << vertex[2]
-                << " before the node's transform";
+                << " before the node's transform" << (scale == 1 ? "" : " and the scale " + inShortest(scale));
         throw InputError(name, place + ": vertex " + std::to_string(i), problem.str());
       }
       positions.push_back(coordinate);
@@ -228,6 +230,11 @@ void warnOfDropped(const Collector& collected, std::vector<std::string>& warning
                      counted(collected.lines, "line") + ", which are no surface");
 }
 
+void requireScale(const std::string& name, double scale) {
+  if (scale > 0 && std::isfinite(scale)) return;
+  throw InputError(name, "scale", "expected a finite number above 0, got " + inShortest(scale));
+}
+
 void requireTriangles(bool some, const Collector& collected) {
   if (some) return;
   throw InputError(collected.name, "",
@@ -235,21 +242,23 @@ void requireTriangles(bool some, const Collector& collected) {
                        counted(collected.lines, "line"));
 }
 
-FileMesh wholeOf(const std::filesystem::path& path, const MeshFile& file, std::vector<std::string>& warnings) {
+FileMesh wholeOf(const std::filesystem::path& path, const MeshFile& file, std::vector<std::string>& warnings,
+                 double scale) {
   const std::string name = path.string();
   requireSize(name, file, false);
-  Collector collector{name, file};
+  Collector collector{name, file, scale};
   for (const MeshFile::Node& node : file.nodes) collector.add(node, node.fileFromNode);
   requireTriangles(!collector.indices.empty(), collector);
   warnOfDropped(collector, warnings);
   return collector.take(path.filename().string(), warnings);
 }
 
-Assembly assemblyOf(const std::filesystem::path& path, const MeshFile& file, std::vector<std::string>& warnings) {
+Assembly assemblyOf(const std::filesystem::path& path, const MeshFile& file, std::vector<std::string>& warnings,
+                    double scale) {
   const std::string name = path.string();
   requireSize(name, file, true);
   Assembly assembly;
-  Collector collector{name, file};
+  Collector collector{name, file, scale};
   std::map<std::vector<uint32_t>, uint32_t> known;  // what nodes place -> its mesh
   for (const MeshFile::Node& node : file.nodes) {
     auto found = known.find(node.parts);
@@ -261,8 +270,10 @@ Assembly assemblyOf(const std::filesystem::path& path, const MeshFile& file, std
       found = known.emplace(node.parts, static_cast<uint32_t>(assembly.meshes.size())).first;
       assembly.meshes.push_back(std::move(mesh));
     }
-    if (std::string wrong = validate(node.fileFromNode); !wrong.empty()) throw InputError(name, placeOf(node), wrong);
-    assembly.parts.push_back({node.name, found->second, node.fileFromNode});
+    Transform fileFromNode = node.fileFromNode;
+    for (size_t row = 0; row < 3; ++row) fileFromNode.m[4 * row + 3] *= scale;
+    if (std::string wrong = validate(fileFromNode); !wrong.empty()) throw InputError(name, placeOf(node), wrong);
+    assembly.parts.push_back({node.name, found->second, fileFromNode});
   }
   requireTriangles(!assembly.parts.empty(), collector);
   warnOfDropped(collector, warnings);
@@ -271,17 +282,18 @@ Assembly assemblyOf(const std::filesystem::path& path, const MeshFile& file, std
 
 }  // namespace
 
-Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string>& warnings, double scale) {
   const DefaultFloats floats;
-  return assemblyOf(path, openFile(path, warnings), warnings);
+  requireScale(path.string(), scale);
+  return assemblyOf(path, openFile(path, warnings), warnings, scale);
 }
 
 FileContent readContent(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   const DefaultFloats floats;
   const MeshFile file = openFile(path, warnings);
-  FileContent content{file.unit, wholeOf(path, file, warnings), {}};
+  FileContent content{file.unit, wholeOf(path, file, warnings, 1), {}};
   std::vector<std::string> more;
-  content.assembly = assemblyOf(path, file, more);
+  content.assembly = assemblyOf(path, file, more, 1);
   for (std::string& warning : more) {
     if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
   }
@@ -322,11 +334,12 @@ MeshName splitMeshName(const std::filesystem::path& name) {
   return {name, {}};
 }
 
-FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings) {
+FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings, double scale) {
   const DefaultFloats floats;
   const MeshName split = splitMeshName(name);
-  if (!split.node) return wholeOf(split.file, openFile(split.file, warnings), warnings);
-  FileMesh mesh = readAssembly(split.file, warnings).meshOf(split.file.string(), *split.node);
+  requireScale(name.string(), scale);
+  if (!split.node) return wholeOf(split.file, openFile(split.file, warnings), warnings, scale);
+  FileMesh mesh = readAssembly(split.file, warnings, scale).meshOf(split.file.string(), *split.node);
   mesh.name = name.filename().string();
   return mesh;
 }

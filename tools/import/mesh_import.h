@@ -55,13 +55,17 @@ MeshName splitMeshName(const std::filesystem::path& name);
 /// Assimp reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it
 /// makes of them.
 ///
-/// Appends to `warnings` what a person should know, each beginning with the file. Throws InputError if the file is
-/// missing, no regular file or broken, holds no triangle, a vertex that is not finite or a face that names a vertex
-/// that does not exist, or if its nodes place so much so often that the mesh would be too large.
-FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings);
+/// Each number is multiplied by `scale` in double precision, after the nodes' transforms and before it is rounded to
+/// float, so that 0.001 makes metres of millimetres; poses are then in the scaled unit.
+///
+/// Appends to `warnings` what a person should know, each beginning with the file. Throws InputError if the scale is not
+/// finite and above 0, or if the file is missing, no regular file or broken, holds no triangle, a vertex that is not
+/// finite or a face that names a vertex that does not exist, or if its nodes place so much so often that the mesh would
+/// be too large.
+FileMesh readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings, double scale = 1);
 
 /// Reads a file as an assembly, otherwise as above. Also throws InputError if a node's pose is singular.
-Assembly readAssembly(const std::filesystem::path& file, std::vector<std::string>& warnings);
+Assembly readAssembly(const std::filesystem::path& file, std::vector<std::string>& warnings, double scale = 1);
 
 /// A file read both ways.
 struct FileContent {

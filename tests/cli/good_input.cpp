@@ -156,7 +156,8 @@ TEST_CASE("sweep describes the contact in words, and --json prints the answer li
   const Run crossing = runProgram(folder,
                                   "sweep a.obj a.obj --at 1 1 -1 --rotate 0 1 0 -90 --direction 0 0 1 --distance 2 "
                                   "--mode reference --skip-overlapping");
-  CHECK_THAT(crossing.out, Contains("clear of all but 1 object left out: 0 (a.obj), whose surface crosses"));
+  CHECK_THAT(crossing.out,
+             Contains("clear: certainly no contact within 2\n  without object 0 (a.obj), whose surface crosses"));
   const Run json = runProgram(folder, arguments + "--json");
   const auto answers = linesOf(json.out);
   REQUIRE(answers.size() == 1);

@@ -134,7 +134,7 @@ Option Option::within(double least, double most) {
 }
 
 Option Option::list() {
-  option_->delimiter(',');
+  option_->delimiter(',')->allow_extra_args(false);  // else it takes the arguments behind it
   return *this;
 }
 

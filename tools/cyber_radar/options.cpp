@@ -19,6 +19,11 @@ void requireFinite(const char* option, const std::vector<double>& values) {
   }
 }
 
+void requireScale(const char* option, std::optional<double> scale) {
+  if (!scale || (*scale > 0 && std::isfinite(*scale))) return;
+  throw InputError(option, "", "expected a finite number above 0, got " + inShortest(*scale));
+}
+
 /// The sensor's pose: turned about an axis by an angle in degrees, then moved.
 Transform poseFrom(const std::vector<double>& at, const std::vector<double>& rotate) {
   Transform pose;
@@ -45,6 +50,26 @@ uint32_t resolutionFrom(const std::string& text) {
         "expected auto or a whole number from 1 to " + std::to_string(kMaxResolution) + ", got \"" + text + "\"");
   }
   return value;
+}
+
+/// NaN for what is no number.
+double numberFrom(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? value : std::nan("");
+}
+
+/// The nodes of a file; of FILE#NODE that node, in its own frame and without a name.
+Assembly nodesOf(const std::string& name, std::vector<std::string>& warnings, double scale) {
+  Assembly nodes;
+  if (splitMeshName(name).node) {
+    nodes.meshes.push_back(readMesh(name, warnings, scale));
+    nodes.parts.emplace_back();
+  } else {
+    nodes = readAssembly(name, warnings, scale);
+    if (nodes.parts.size() == 1) nodes.meshes[0].name = std::filesystem::path(name).filename().string();
+  }
+  return nodes;
 }
 
 }  // namespace
@@ -138,13 +163,19 @@ std::vector<uint32_t> devicesFrom(const std::string& text) {
   }
 }
 
-void SweepOptions::addMotionTo(Command& command) {
-  command.option("--direction", &direction, "Where the sensor moves; the length does not matter")
-      .count(3)
-      .value("X Y Z");
-  command.option("--distance", &distance, "How far, in the meshes' units").value("D");
-  command.option("--at", &at, "Puts the sensor's origin here").count(3).value("X Y Z");
-  command.option("--rotate", &rotate, "Turns the sensor first: an axis and degrees").count(4).value("X Y Z ANGLE");
+std::vector<NamedOption> SweepOptions::addMotionTo(Command& command) {
+  std::vector<NamedOption> added;
+  const auto add = [&](const char* name, OptionTarget target, const char* about) {
+    added.push_back({name, command.option(name, std::move(target), about)});
+    return added.back().option;
+  };
+  add("--direction", &direction, "Where the sensor moves; the length does not matter").count(3).value("X Y Z");
+  add("--distance", &distance, "How far, in the unit of the scaled meshes").value("D");
+  add("--at", &at, "Puts the sensor's origin here").count(3).value("X Y Z");
+  add("--rotate", &rotate, "Turns the sensor first: an axis and degrees").count(4).value("X Y Z ANGLE");
+  add("--scale", &scale, "Multiplies the numbers of both files: 0.001 makes metres of millimetres").value("S");
+  add("--sensor-scale", &sensorScale, "The same for the sensor's file, instead of --scale").value("S");
+  return added;
 }
 
 void SweepOptions::addFieldsTo(Command& command) {
@@ -160,10 +191,18 @@ void SweepOptions::addFieldsTo(Command& command) {
     if (field.kind() == 'b') {
       command.option(
           name, [set] { set(1); }, field.about);
+    } else if (field.word) {
+      const std::function<void(const std::string&)> read = [set, word = field.word](const std::string& text) {
+        set(text == word ? HUGE_VAL : numberFrom(text));
+      };
+      command.option(name, read, field.about).value("N|" + std::string(field.word));
     } else {
       command.option(name, set, field.about);
     }
   }
+  command.option("--exclude", &exclude, "Nodes of the scene that take no part, by number or name")
+      .list()
+      .value("NODE,...");
 }
 
 Workload SweepOptions::load() const {
@@ -173,6 +212,8 @@ Workload SweepOptions::load() const {
   requireFinite("--distance", {*distance});
   requireFinite("--at", at);
   requireFinite("--rotate", rotate);
+  requireScale("--scale", scale);
+  requireScale("--sensor-scale", sensorScale);
   QuerySpec query = fields;
   query.id = "sweep";
   std::copy(direction.begin(), direction.end(), query.direction.begin());
@@ -181,14 +222,21 @@ Workload SweepOptions::load() const {
   }
   query.distance = *distance;
   if (query.distance < 0) throw InputError("--distance", "", "expected a number of 0 or more");
-  query.setSensor({1, poseFrom(at, rotate)});
 
   std::vector<std::string> warnings;
   Workload workload;
-  const FileMesh still = readMesh(scene, warnings), moving = readMesh(sensor, warnings);
-  workload.meshes = {still, moving};
-  workload.scenes.push_back({"scene", {}, {{0, aboutBase({}, still.base)}}, {}});
-  query.worldFromMesh = aboutBase(query.worldFromMesh, moving.base);
+  const Assembly nodes = nodesOf(scene, warnings, scale.value_or(1));
+  const FileMesh moving = readMesh(sensor, warnings, sensorScale ? *sensorScale : scale.value_or(1));
+  workload.meshes.assign(nodes.meshes.begin(), nodes.meshes.end());
+  workload.meshes.push_back(moving);
+  SceneSpec& objects = workload.scenes.emplace_back();
+  objects.id = "scene";
+  for (const Assembly::Part& part : nodes.parts) {
+    objects.instances.push_back({part.mesh, aboutBase(part.fileFromNode, nodes.meshes[part.mesh].base)});
+    if (nodes.parts.size() > 1) objects.names.push_back(part.name);
+  }
+  for (const std::string& node : exclude) query.exclude.push_back(nodes.numberOf(scene, node));
+  query.setSensor({static_cast<uint32_t>(nodes.meshes.size()), aboutBase(poseFrom(at, rotate), moving.base)});
   workload.queries.push_back(query);
   printWarnings(warnings);
   return workload;

@@ -35,15 +35,16 @@ struct EngineOptions {
 struct SweepOptions {
   std::string scene, sensor;
   std::vector<double> direction, at, rotate;
-  std::optional<double> distance;
+  std::optional<double> distance, scale, sensorScale;
+  std::vector<std::string> exclude;
   QuerySpec fields;
 
-  /// All but the two files and the fields.
-  void addMotionTo(Command& command);
-  /// Those of queryFields() that are options.
+  /// All but the two files and what addFieldsTo() adds. Returns what was added.
+  std::vector<NamedOption> addMotionTo(Command& command);
+  /// Those of queryFields() that are options, and --exclude.
   void addFieldsTo(Command& command);
-  /// Reads both files: mesh 0 and object 0 are the scene's, mesh 1 the sensor's. Prints warnings to standard error.
-  /// Throws InputError that names the option or file.
+  /// Reads both files: each node of the scene's is an object of that number, the last mesh is the sensor's. Prints
+  /// warnings to standard error. Throws InputError that names the option or file.
   Workload load() const;
 };
 

@@ -29,6 +29,7 @@ struct Options {
   std::vector<std::string> files;
   std::string query, out;
   SweepOptions sweep;
+  std::vector<NamedOption> motion;
   EngineOptions engine;
   bool raw = false;
 };
@@ -41,11 +42,8 @@ Workload load(Options& options) {
     return options.sweep.load();
   }
   if (options.query.empty()) throw InputError("--query", "", "expected the id of a query of the file, got none");
-  for (const auto& [name, given] :
-       {std::pair{"--direction", !options.sweep.direction.empty()},
-        std::pair{"--distance", options.sweep.distance.has_value()}, std::pair{"--at", !options.sweep.at.empty()},
-        std::pair{"--rotate", !options.sweep.rotate.empty()}}) {
-    if (given) throw InputError(name, "", "expected no such option beside a query file, which says it");
+  for (const auto& [name, option] : options.motion) {
+    if (option.given()) throw InputError(name, "", "expected no such option beside a query file, which says it");
   }
   std::vector<std::string> warnings;
   Outputs outputs;
@@ -127,7 +125,7 @@ void addScopesCommand(Program& program) {
   command.option("FILES", &options->files, "A query file; or two mesh files, scene and sensor").required().count(1, 2);
   command.option("--query", &options->query, "Which query of the query file").value("ID");
   command.option("--out", &options->out, "Folder for the page").required().value("DIR");
-  options->sweep.addMotionTo(command);
+  options->motion = options->sweep.addMotionTo(command);
   options->engine.addResolutionTo(command);
   command.option("--raw", &options->raw, "Writes the 32-bit values too");
   command.run([options] {

@@ -14,14 +14,17 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep hall.glb robot.ply --direction 1 0 0 --distance 5
   cyber-radar sweep ring.obj peg.stl --at 0 0 -3 --rotate 0 1 0 15 --direction 0 0 1 --distance 8 --speed 0.5
+  cyber-radar sweep gearbox.glb gearbox.glb#shaft --exclude shaft --direction 0 0 1 --distance 90 --hits all
+  cyber-radar sweep hall.glb part.stl --sensor-scale 0.001 --direction 0 0 1 --distance 2
   cyber-radar sweep floor.stl crate.stl --direction 0 0 1 --distance 8 --ignore-leaving
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --json | python3 -m json.tool
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --expect clear
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --view sweep.html
 
-SCENE and SENSOR are OBJ, STL, PLY, OFF, 3MF or glTF 2 files, or what assimp reads besides, in one common unit; FILE#3 or
-FILE#NAME is one node of a file, in its own frame. The scene stands as it is; the sensor is turned (--rotate), put in its
-place (--at) and moved along --direction for --distance.)";
+SCENE and SENSOR are OBJ, STL, PLY, OFF, 3MF or glTF 2 files, or what assimp reads besides, in one common unit after
+--scale and --sensor-scale; FILE#3 or FILE#NAME is one node of a file, in its own frame. The scene stands as it is, each of
+its nodes an object (cyber-radar info lists them); the sensor, one mesh, is turned (--rotate), put in its place (--at) and
+moved along --direction for --distance.)";
 
 struct Options {
   EngineOptions engine;
@@ -30,13 +33,15 @@ struct Options {
   bool json = false;
 };
 
-std::string introduction(const Workload& workload) {
-  const auto describe = [&](size_t number) {
-    const MeshData& mesh = workload.meshes[number];
-    return mesh.name + ", " + counted(mesh.triangleCount(), "triangle") + "\n";
-  };
+std::string introduction(const Workload& workload, const std::filesystem::path& scene) {
   const QuerySpec& query = workload.queries.front();
-  return "scene:  " + describe(0) + "sensor: " + describe(1) + "moves " + inDigits(query.distance) + " along " +
+  const std::vector<Instance>& objects = workload.scenes.front().instances;
+  const MeshData& sensor = workload.meshes[query.mesh];
+  uint64_t triangles = 0;
+  for (const Instance& object : objects) triangles += workload.meshes[object.mesh].triangleCount();
+  return "scene:  " + scene.filename().string() + (objects.size() > 1 ? ", " + counted(objects.size(), "object") : "") +
+         ", " + counted(triangles, "triangle") + "\nsensor: " + sensor.name + ", " +
+         counted(sensor.triangleCount(), "triangle") + "\nmoves " + inDigits(query.distance) + " along " +
          inDigits(query.direction) + "\n";
 }
 
@@ -64,7 +69,8 @@ int sweep(const Options& options) {
   if (options.json) {
     std::cout << AnswerRows(workload, AnswerFormat::lines).text(0, workload.queries, {&answer, 1});
   } else {
-    std::cout << introduction(workload) << "\n" << inWords(workload, workload.queries.front(), answer);
+    std::cout << introduction(workload, options.sweep.scene) << "\n"
+              << inWords(workload, workload.queries.front(), answer);
     const std::string resolution = resolutionsInWords(answering.stats());
     if (!resolution.empty()) {
       std::cout << "  " << resolution << (engine.resolution == 0 ? " (chosen)" : "") << " on "

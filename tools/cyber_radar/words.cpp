@@ -13,13 +13,17 @@ std::string triangleInWords(uint32_t triangle, Feature feature) {
   return feature == Feature::none || feature == Feature::face ? name : nameOf(feature) + (" of " + name);
 }
 
+/// object 3 "lid" (gearbox.glb#3)
+std::string objectInWords(const Workload& workload, uint32_t scene, ObjectId object) {
+  const std::vector<std::string> names = workload.objectNames(scene);
+  const std::string name = names.empty() ? "" : printable(names[object], 200);
+  return "object " + std::to_string(object) + (name.empty() ? "" : " \"" + name + "\"") + " (" +
+         workload.meshes[workload.instance(scene, object).mesh].name + ")";
+}
+
 std::string contactInWords(const Workload& workload, const QuerySpec& query, const Result& result) {
-  const Instance& touched = workload.instance(query.scene, result.object);
-  const std::vector<std::string> names = workload.objectNames(query.scene);
-  const std::string name = names.empty() ? "" : names[result.object];
-  std::string text = "  what    " + triangleInWords(result.triB, result.featureB) + " of object " +
-                     std::to_string(result.object) + (name.empty() ? "" : " \"" + name + "\"") + " (" +
-                     workload.meshes[touched.mesh].name + "), by the sensor's " +
+  std::string text = "  what    " + triangleInWords(result.triB, result.featureB) + " of " +
+                     objectInWords(workload, query.scene, result.object) + ", by the sensor's " +
                      triangleInWords(result.triA, result.featureA) + " (" + workload.meshes[query.mesh].name + ")\n";
   if (!std::isnan(result.point[0])) text += "  where   " + inDigits(result.point) + "\n";
   if (!std::isnan(result.normal[0])) {
@@ -29,29 +33,23 @@ std::string contactInWords(const Workload& workload, const QuerySpec& query, con
   return text;
 }
 
-}  // namespace
-
-std::string inDigits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
+std::string listsInWords(const Workload& workload, const QuerySpec& query, const Listed& listed) {
+  std::string text;
+  for (size_t i = 1; i < listed.hits.size(); ++i) {
+    const Result& hit = listed.hits[i];
+    text += "  then    " + objectInWords(workload, query.scene, hit.object) +
+            (hit.status == Status::overlap     ? " at the start\n"
+             : hit.status == Status::undecided ? ", perhaps, after " + inDigits(hit.lo) + "\n"
+                                               : " after " + inDigits(hit.t) + "\n");
+  }
+  for (const ObjectId object : listed.overlapping) {
+    text += "  without " + objectInWords(workload, query.scene, object) +
+            ", whose surface crosses the sensor's at the start\n";
+  }
   return text;
 }
 
-std::string inDigits(const std::array<double, 3>& vector) {
-  return "(" + inDigits(vector[0]) + ", " + inDigits(vector[1]) + ", " + inDigits(vector[2]) + ")";
-}
-
-std::string leastFreeDistance(const Scopes& scopes) {
-  return std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL);
-}
-
-std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
-  if (!answer.listed.overlapping.empty()) {
-    const ObjectId object = answer.listed.overlapping[0];  // the only one
-    return "clear of all but 1 object left out: " + std::to_string(object) + " (" +
-           workload.meshes[workload.instance(query.scene, object).mesh].name +
-           "), whose surface crosses the sensor's at the start\n";
-  }
+std::string resultInWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
   const Result& result = answer.result;
   const std::string distance = inDigits(query.distance);
   switch (result.status) {
@@ -85,6 +83,26 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
       break;
   }
   return "invalid: " + answer.reason + "\n";
+}
+
+}  // namespace
+
+std::string inDigits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string inDigits(const std::array<double, 3>& vector) {
+  return "(" + inDigits(vector[0]) + ", " + inDigits(vector[1]) + ", " + inDigits(vector[2]) + ")";
+}
+
+std::string leastFreeDistance(const Scopes& scopes) {
+  return std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL);
+}
+
+std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
+  return resultInWords(workload, query, answer) + listsInWords(workload, query, answer.listed);
 }
 
 std::string statusesInWords(const AnsweringStats& stats) {

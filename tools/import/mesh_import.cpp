@@ -300,28 +300,23 @@ FileContent readContent(const std::filesystem::path& path, std::vector<std::stri
   return content;
 }
 
-const FileMesh& Assembly::meshOf(const std::string& file, const std::string& node) const {
+uint32_t Assembly::numberOf(const std::string& file, const std::string& node) const {
   if (node.find_first_not_of("0123456789") == node.npos) {
     uint32_t number = 0;
     const auto [end, error] = std::from_chars(node.data(), node.data() + node.size(), number);
     if (node.empty() || error != std::errc() || number >= parts.size()) {
       throw InputError(file + "#" + node, "", "expected one of the " + counted(parts.size(), "node") + ", from 0");
     }
-    return meshes[parts[number].mesh];
+    return number;
   }
-  const Part* found = nullptr;
-  size_t count = 0;
-  for (const Part& part : parts) {
-    if (part.name != node) continue;
-    found = &part;
-    ++count;
-  }
+  const auto isIt = [&](const Part& part) { return part.name == node; };
+  const auto count = std::ranges::count_if(parts, isIt);
   if (count != 1) {
     throw InputError(file + "#" + node, "",
                      "expected the name that one node with triangles has, or a node's number, got a name that " +
                          (count == 0 ? "none has" : std::to_string(count) + " have"));
   }
-  return meshes[found->mesh];
+  return static_cast<uint32_t>(std::ranges::find_if(parts, isIt) - parts.begin());
 }
 
 MeshName splitMeshName(const std::filesystem::path& name) {

@@ -28,9 +28,13 @@ struct Assembly {
   std::vector<FileMesh> meshes;  ///< in the frames of their nodes; nodes that place the same meshes share one
   std::vector<Part> parts;
 
-  /// The geometry of one node: `node` is its number in `parts` or the name that it alone has. Throws InputError that
-  /// names `file` and the node.
-  const FileMesh& meshOf(const std::string& file, const std::string& node) const;
+  /// The number in `parts` of a node: `node` is that number or the name that it alone has. Throws InputError that names
+  /// `file` and the node.
+  uint32_t numberOf(const std::string& file, const std::string& node) const;
+  /// The geometry of such a node.
+  const FileMesh& meshOf(const std::string& file, const std::string& node) const {
+    return meshes[parts[numberOf(file, node)].mesh];
+  }
 };
 
 /// A mesh's name: FILE, or FILE#NODE for the geometry of one node.

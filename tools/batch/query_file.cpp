@@ -5,20 +5,21 @@
 #include <thread>
 
 #include "batch/binary_queries.h"
+#include "batch/query_json.h"
 #include "batch/query_reader.h"
 
 namespace radar::tools {
 
 void ModesAsked::add(const Workload& world, const QuerySpec& query) {
   if (!listed && (query.hits > 1 || query.skipOverlapping)) listed = query.id;
-  modes.insert(query.mode);
+  ++modes[query.mode];
   if (query.mode || !exactOnly.empty()) return;
   const std::string reason = tools::exactOnly(world, query);
   if (!reason.empty()) exactOnly = reason + " of query \"" + query.id + "\"";
 }
 
 void ModesAsked::add(const ModesAsked& later) {
-  modes.insert(later.modes.begin(), later.modes.end());
+  for (const auto& [mode, count] : later.modes) modes[mode] += count;
   if (exactOnly.empty()) exactOnly = later.exactOnly;
   if (!listed) listed = later.listed;
 }
@@ -66,8 +67,9 @@ ModesAsked modesOf(const Workload& workload) {
 QueryFile::QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs) {
   JsonQueryFile json = readJsonQueryFile(file, warnings, outputs);
   world_ = std::move(json.workload);
+  bases_ = std::move(json.bases);
   if (json.queriesFile) {
-    binary_ = std::make_unique<BinaryQueries>(*json.queriesFile, world_, json.bases);
+    binary_ = std::make_unique<BinaryQueries>(*json.queriesFile, world_, bases_);
     modes_ = check(*binary_, world_);
     json.fingerprint.add(binary_->bytes());
   } else {
@@ -87,6 +89,11 @@ std::span<const QuerySpec> QueryFile::read(uint64_t first, uint64_t count, std::
   room.clear();
   for (uint64_t i = first; i < first + count; ++i) room.push_back(binary_->read(i));
   return room;
+}
+
+QuerySpec QueryFile::query(const std::string& name, std::string_view json) const {
+  const nlohmann::json document = parseJson(name, json);
+  return queryFrom(JsonValue(name, document), world_, bases_);
 }
 
 Workload QueryFile::all() && {

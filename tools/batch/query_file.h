@@ -1,10 +1,11 @@
 // Query files, format cyber-radar-queries-1.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,9 +21,9 @@ class BinaryQueries;
 
 /// The modes that queries ask for.
 struct ModesAsked {
-  std::set<std::optional<AnswerMode>> modes;  ///< none: a query leaves the choice to the command
-  std::string exactOnly;                      ///< what of one that does mode sampled does not offer; or empty
-  std::optional<std::string> listed;          ///< the id of one whose answer has lists: of hits, or of what overlaps
+  std::map<std::optional<AnswerMode>, uint64_t> modes;  ///< how many; none: they leave the choice to the command
+  std::string exactOnly;                                ///< what of one that does mode sampled does not offer; or empty
+  std::optional<std::string> listed;  ///< the id of one whose answer has lists: of hits, or of what overlaps
   void add(const Workload& world, const QuerySpec& query);
   /// Those of later queries.
   void add(const ModesAsked& later);
@@ -50,13 +51,17 @@ class QueryFile {
   std::span<const QuerySpec> read(uint64_t first, uint64_t count, std::vector<QuerySpec>& room) const;
   /// The world with all queries.
   Workload all() &&;
+  /// A query in JSON, as it would stand in the file; another one may have its id. Throws InputError that begins with
+  /// `name`.
+  QuerySpec query(const std::string& name, std::string_view json) const;
   const ModesAsked& modes() const { return modes_; }
   /// A hash of all that the answers depend on: bytes of the files, but of meshes only what was read.
   const std::string& fingerprint() const { return fingerprint_; }
 
  private:
   Workload world_;
-  std::unique_ptr<BinaryQueries> binary_;  ///< none: the queries are in world_
+  std::vector<std::array<double, 3>> bases_;  ///< of the meshes that may be sensors
+  std::unique_ptr<BinaryQueries> binary_;     ///< none: the queries are in world_
   ModesAsked modes_;
   std::string fingerprint_;
 };

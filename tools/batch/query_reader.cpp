@@ -11,36 +11,16 @@
 #include <unordered_set>
 
 #include "batch/query_file.h"
+#include "batch/query_json.h"
 #include "batch/query_reader.h"
-#include "import/json_input.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
-#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::string_view kLater[] = {"rotation"};
-
-void requireKnownKeys(const JsonValue& object, std::span<const std::string_view> known) {
-  object.requireObject();
-  for (const auto& [key, value] : object.json().items()) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    std::string list;
-    for (std::string_view name : known) list.append(list.empty() ? "" : ", ").append(name);
-    const bool isLater = std::find(std::begin(kLater), std::end(kLater), key) != std::end(kLater);
-    object.member(key.c_str())
-        .refuse("expected one of the keys " + list + ", got \"" + printable(key, 60) + "\"" +
-                (isLater ? ", which is reserved for a later version" : ""));
-  }
-}
-
-void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string_view> known) {
-  requireKnownKeys(object, std::span(known.begin(), known.size()));
-}
-
 /// One line of an instance file; `numbers` holds 13 at most. Returns how many there are, 0 if one is none.
 size_t readNumbers(std::string_view line, std::span<double> numbers) {
   size_t count = 0;
@@ -54,45 +34,6 @@ size_t readNumbers(std::string_view line, std::span<double> numbers) {
     line.remove_prefix(length);
     ++count;
   }
-}
-
-// Three numbers of `list`, from `first` on, that an object or a sensor may move by (radar.h).
-std::array<double, 3> readMotion(const JsonValue& list, size_t first) {
-  std::array<double, 3> motion{};
-  for (size_t k = 0; k < 3; ++k) {
-    motion[k] = list[first + k].number();
-    if (std::abs(motion[k]) > 0x1p1000) list[first + k].expected("a number of at most 2^1000");
-  }
-  return motion;
-}
-
-std::array<double, 3> readVector(const JsonValue& list) {
-  if (list.size() != 3) list.expected("3 numbers");
-  return {list[0].number(), list[1].number(), list[2].number()};
-}
-
-void readField(const JsonValue& value, const QueryField& field, QuerySpec& to) {
-  const nlohmann::json& json = value.json();
-  double number = HUGE_VAL;
-  bool fits = true;
-  if (field.kind() == 'b') {
-    number = value.boolean();
-  } else if (!field.word || json != field.word) {
-    fits = field.kind() == 'u' ? json.is_number_unsigned() : json.is_number();
-    number = fits ? json.get<double>() : 0;
-  }
-  if (!fits || !setValue(to, field, number)) value.expected(expectedFor(field));
-}
-
-void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
-  for (const QueryField& field : queryFields()) {
-    query.ifHas(field.name, [&](const JsonValue& value) {
-      if (field.kind() != 'o') return readField(value, field, to);
-      value.forEach(
-          [&](const JsonValue& id) { to.exclude.push_back(id.index(objects, "objects of the query's scene")); });
-    });
-  }
-  if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
 }
 
 /// A mesh file, or a node of one.
@@ -118,7 +59,6 @@ class Reader {
   void readInstances(const JsonValue& scene, SceneSpec& spec);
   const Assembly& assembly(const std::filesystem::path& file, double scale);
   void readQuery(const JsonValue& query);
-  Instance readInstance(const JsonValue& list) const;
   std::vector<Instance> readInstanceFile(const std::filesystem::path& file);
   std::vector<ObjectMask> readMasks(const JsonValue& list, size_t objects) const;
   std::vector<ObjectMotion> readMotions(const JsonValue& list, size_t objects) const;
@@ -250,7 +190,9 @@ void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
       fingerprint_.add(fileFromMesh.m);
     }
   } else {
-    scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });
+    scene.member("instances").forEach([&](const JsonValue& list) {
+      spec.instances.push_back(instanceFrom(list, bases_));
+    });
   }
 }
 
@@ -270,7 +212,7 @@ std::vector<ObjectMotion> Reader::readMotions(const JsonValue& list, size_t obje
   std::unordered_set<uint32_t> named;
   list.forEach([&](const JsonValue& entry) {
     if (entry.size() != 4) entry.expected("[object, dx, dy, dz]");
-    motions.push_back({entry[0].index(objects, "objects"), readMotion(entry, 1)});
+    motions.push_back({entry[0].index(objects, "objects"), motionFrom(entry, 1)});
     if (!named.insert(motions.back().first).second) entry[0].expected("each object once");
   });
   return motions;
@@ -313,17 +255,6 @@ std::vector<float> Reader::readPositions(const std::filesystem::path& file, uint
   return positions;
 }
 
-Instance Reader::readInstance(const JsonValue& list) const {
-  const size_t count = list.size();
-  if (count != 1 && count != 13) list.expected("a mesh index, alone or followed by 12 numbers");
-  Instance instance;
-  instance.mesh = list[0].index(bases_.size(), "meshes");
-  for (size_t i = 1; i < count; ++i) instance.worldFromMesh.m[i - 1] = list[i].number();
-  if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) list.refuse(wrong);
-  instance.worldFromMesh = aboutBase(instance.worldFromMesh, bases_[instance.mesh]);
-  return instance;
-}
-
 std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) {
   const std::string content = readRegularFile(file, "an instance file");
   fingerprint_.add(content);
@@ -359,48 +290,9 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 }
 
 void Reader::readQuery(const JsonValue& query) {
-  static const std::vector<std::string_view> kKnown = [] {
-    std::vector<std::string_view> known{"id", "scene", "batch", "sensor", "dir", "D", "motion", "mode"};
-    for (const QueryField& field : queryFields()) known.emplace_back(field.name);
-    return known;
-  }();
-  requireKnownKeys(query, kKnown);
-  QuerySpec spec;
-  const JsonValue id = query.member("id");
-  spec.id = id.string();
-  if (!queryIds_.insert(spec.id).second) id.expected("an id that no other query has");
-  if (!query.has("scene")) {
-    query.refuse("expected the key \"scene\", the number of the query's scene, from 0, which is missing");
-  }
-  spec.scene = query.member("scene").index(workload_.scenes.size(), "scenes");
-  query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
-  spec.setSensor(readInstance(query.member("sensor")));
-  if (query.has("motion")) {
-    for (const char* other : {"dir", "D"}) {
-      if (query.has(other)) query.member(other).refuse("expected either \"dir\" and \"D\" or \"motion\", got both");
-    }
-    const JsonValue motion = query.member("motion");
-    if (motion.size() != 3) motion.expected("3 numbers");
-    spec.motion = readMotion(motion, 0);
-  } else {
-    const JsonValue direction = query.member("dir");
-    spec.direction = readVector(direction);
-    if (spec.direction == std::array<double, 3>{}) direction.expected("a vector that is not zero");
-    const JsonValue distance = query.member("D");
-    spec.distance = distance.numberFrom0();
-    if (spec.distance > 0x1p1000 && !workload_.scenes[spec.scene].motions.empty()) {
-      distance.expected("at most 2^1000 in a scene with motions");
-    }
-  }
-  readFields(query, workload_.objectCount(spec.scene), spec);
-  query.ifHas("mode", [&](const JsonValue& mode) {
-    const std::string name = mode.string();
-    spec.mode = mode.guard([&] { return modeFrom(name); });
-    const std::string reason = exactOnly(workload_, spec);
-    if (spec.mode == AnswerMode::sampled && !reason.empty())
-      mode.expected("contact or reference, as " + reason + " needs");
-  });
-  workload_.queries.push_back(std::move(spec));
+  workload_.queries.push_back(queryFrom(query, workload_, bases_));
+  const std::string& id = workload_.queries.back().id;
+  if (!queryIds_.insert(id).second) query.member("id").expected("an id that no other query has");
 }
 
 }  // namespace
@@ -408,25 +300,6 @@ void Reader::readQuery(const JsonValue& query) {
 JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings,
                                 const Outputs& outputs) {
   return Reader(file, warnings, outputs).read();
-}
-
-std::string exactOnly(const Workload& workload, const QuerySpec& query) {
-  if (query.motion) return "\"motion\"";
-  if (!workload.scenes[query.scene].motions.empty()) return "a scene with \"motions\"";
-  const QueryField* const field = exactOnly(query);
-  return field ? "\"" + std::string(field->name) + "\"" : "";
-}
-
-const char* nameOf(AnswerMode mode) {
-  constexpr const char* kNames[] = {"sampled", "contact", "reference"};
-  return kNames[static_cast<size_t>(mode)];
-}
-
-AnswerMode modeFrom(std::string_view name) {
-  for (AnswerMode mode : {AnswerMode::sampled, AnswerMode::contact, AnswerMode::reference}) {
-    if (name == nameOf(mode)) return mode;
-  }
-  throw std::invalid_argument("expected mode sampled, contact or reference, got \"" + std::string(name) + "\"");
 }
 
 }  // namespace radar::tools

@@ -45,6 +45,31 @@ double Answering::setUp(uint32_t scene) {
   return 1e3 * (now() - start);
 }
 
+void Answering::check(const Batch& batch, std::span<const QuerySpec> queries) const {
+  const Mode mode = batch.mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
+  for (size_t i = 0; i < batch.queries.size(); ++i) {
+    const std::string wrong = validate(batch.queries[i], player_.scene(), mode);
+    if (!wrong.empty()) throw RefusedQuery(batch.numbers[i], queries[batch.numbers[i]].id, wrong);
+  }
+}
+
+void Answering::check(std::span<const QuerySpec> queries) {
+  for (const Batch& batch : batchesOf(queries, options_.resolution, options_.mode)) {
+    show(batch.scene);
+    check(batch, queries);
+  }
+}
+
+Answers Answering::answersOf(const Batch& batch, std::span<const QuerySpec> queries) {
+  try {
+    return answerer_.run(batch.queries, batch.mode);
+  } catch (const Error& error) {
+    // The engine names the query by its place in the batch.
+    if (error.kind == Error::Kind::call) check(batch, queries);
+    throw;
+  }
+}
+
 std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress& progress) {
   std::vector<Answer> answers(queries.size());
   const std::vector<Batch> batches = batchesOf(queries, options_.resolution, options_.mode);
@@ -52,7 +77,7 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
   for (const Batch& batch : batches) {
     show(batch.scene);
     const double begun = now(), computed = threadSeconds();
-    Answers found = answerer_.run(batch.queries, batch.mode);
+    Answers found = answersOf(batch, queries);
     stats_.hostSeconds += threadSeconds() - computed;
     if (batch.mode == AnswerMode::reference) found.stats.stages = {{"reference", 1e3 * (now() - begun)}};
     for (size_t i = 0; i < found.results.size(); ++i) {

@@ -30,6 +30,14 @@ struct AnsweringStats {
   std::vector<StageTime> stages;
 };
 
+/// A query that the engine refuses; its message names the query's id.
+struct RefusedQuery : InputError {
+  RefusedQuery(size_t which, const std::string& id, const std::string& why)
+      : InputError("query \"" + id + "\"", "", why), index(which), problem(why) {}
+  size_t index;         ///< among those that were to be answered
+  std::string problem;  ///< what was expected
+};
+
 class Answering {
  public:
   /// `world` has the meshes and scenes; it must outlive this. Throws InputError if mode sampled is chosen for a query
@@ -42,8 +50,11 @@ class Answering {
   /// open(), shows a scene and brings it to where it is needed. Returns milliseconds, without those for opening.
   double setUp(uint32_t scene);
 
-  /// Answers queries, batch by batch, and adds to stats().
+  /// Answers queries, batch by batch, and adds to stats(). Throws RefusedQuery, too: some limits depend on the sensor's
+  /// size, which no reader knows.
   std::vector<Answer> run(std::span<const QuerySpec> queries, Progress& progress);
+  /// Throws RefusedQuery if run() would; opens nothing.
+  void check(std::span<const QuerySpec> queries);
   /// Since the last reset.
   const AnsweringStats& stats() const { return stats_; }
   void resetStats() { stats_ = {}; }
@@ -52,6 +63,9 @@ class Answering {
 
  private:
   void show(uint32_t scene);
+  /// Of the scene that is shown.
+  void check(const Batch& batch, std::span<const QuerySpec> queries) const;
+  Answers answersOf(const Batch& batch, std::span<const QuerySpec> queries);
 
   AnsweringOptions options_;
   AnsweringStats stats_;

@@ -9,6 +9,7 @@ namespace radar::tools {
 void addSweepCommand(Program& program);
 void addInfoCommand(Program& program);
 void addQueryCommand(Program& program);
+void addStreamCommand(Program& program);
 void addFieldsCommand(Program& program);
 void addMergeCommand(Program& program);
 void addCompareCommand(Program& program);

@@ -12,6 +12,7 @@ constexpr const char* kExamples = R"(Try:
   cyber-radar info hall.glb                 what a mesh file holds: nodes, sizes, closed or open
   cyber-radar query batch.json --out answers.jsonl
                                             many sweeps from a file, one JSON line each
+  cyber-radar stream cell.json              queries from standard input, each answered as it comes
   cyber-radar merge PART... --out answers.jsonl
                                             joins the parts that query --shard answered
   cyber-radar compare A B --within 1e-9     whether two answer files agree
@@ -38,6 +39,7 @@ int main(int argc, char** argv) {
   addViewCommand(program);
   addInfoCommand(program);
   addQueryCommand(program);
+  addStreamCommand(program);
   addFieldsCommand(program);
   addMergeCommand(program);
   addCompareCommand(program);

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "batch/atomic_file.h"
 #include "commit/commit.h"
@@ -21,6 +24,7 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar query batch.json --out answers.npy     records that numpy.load reads
   cyber-radar query batch.json --out part-0 --shard 0/4 --resume
   cyber-radar query batch.json --fail-on hit,overlap,undecided --out answers.jsonl
+  cyber-radar query batch.json --check               what it asks, without answers
   cyber-radar query batch.json --repeat 9 --stats stats.json --out answers.jsonl
 
 A query file is one JSON object of meshes, scenes and queries (format cyber-radar-queries-1); the answers are JSON
@@ -29,7 +33,7 @@ Lines, one per query, in the file's order. cyber-radar workload writes query fil
 struct Options {
   RunOptions run;
   uint32_t repeat = 1;
-  bool repeated = false;
+  bool repeated = false, check = false;
   std::string failOn;
 };
 
@@ -155,6 +159,29 @@ class Run {
   std::array<uint64_t, 5> statuses_{};
 };
 
+/// What a query file holds.
+std::string countsOf(const QueryFile& queries, AnswerMode command) {
+  const Workload& world = queries.world();
+  uint64_t triangles = 0, objects = 0, changed = 0;
+  for (const MeshData& mesh : world.meshes) triangles += mesh.triangleCount();
+  for (uint32_t scene = 0; scene < world.scenes.size(); ++scene) {
+    const SceneSpec& spec = world.scenes[scene];
+    objects += world.objectCount(scene);
+    changed += !spec.masks.empty() || !spec.motions.empty() || !spec.deforms.empty();
+  }
+  std::map<AnswerMode, uint64_t> modes;
+  for (const auto& [mode, count] : queries.modes().modes) modes[mode.value_or(command)] += count;
+  std::string text = counted(world.meshes.size(), "mesh", "meshes") + " of " + counted(triangles, "triangle") + ", " +
+                     counted(world.scenes.size(), "scene") + " of " + counted(objects, "object") + " (" +
+                     std::to_string(changed) + " with masks, motions or deforms), " +
+                     counted(queries.count(), "query", "queries");
+  const char* separator = ": ";
+  for (const auto& [mode, count] : modes) {
+    text += std::exchange(separator, ", ") + std::to_string(count) + " " + nameOf(mode);
+  }
+  return text;
+}
+
 // The exit status; says on standard error what it is for.
 int judge(const Run& run, const std::vector<Status>& failing) {
   std::string found;
@@ -178,6 +205,17 @@ int query(const Options& options) {
   Times times;
   times.loadMs = 1e3 * (now() - start);
   printWarnings(warnings);
+  if (options.check) {
+    options.run.checkFormat(queries);
+    Answering answering(queries.world(), queries.modes(), engine);
+    std::vector<QuerySpec> room;
+    constexpr uint64_t kEach = 16'384;
+    for (uint64_t first = 0; first < queries.count(); first += kEach) {
+      answering.check(queries.read(first, std::min(kEach, queries.count() - first), room));
+    }
+    std::cout << options.run.file << ": " << countsOf(queries, engine.mode) << "\n";
+    return 0;
+  }
 
   engine.timestamps = !options.run.stats.empty() && !options.repeated;
   Run run(options, queries, engine);
@@ -227,6 +265,7 @@ void addQueryCommand(Program& program) {
                                     "more, for the times of the stages")
                             .value("N")
                             .within(1, 1'000'000);
+  command.option("--check", &options->check, "Reads and checks everything, says what there is, and answers nothing");
   command
       .option("--fail-on", &options->failOn,
               "Ends with exit status 1 if an answer has one of these statuses: hit, clear, overlap, undecided")

@@ -43,15 +43,18 @@ Outputs RunOptions::outputs() const {
   return outputs;
 }
 
+void RunOptions::checkFormat(const QueryFile& queries) const {
+  if (answerFormatOf(out) != AnswerFormat::records || !queries.modes().listed) return;
+  throw InputError("--out", out,
+                   "expected another file than .npy, as answers with \"hits\" or \"skip_overlapping\" have lists "
+                   "(query \"" +
+                       *queries.modes().listed + "\")");
+}
+
 Part RunOptions::part(const QueryFile& queries, Answering& answering) const {
+  checkFormat(queries);
   Part part;
   part.format = answerFormatOf(out);
-  if (part.format == AnswerFormat::records && queries.modes().listed) {
-    throw InputError("--out", out,
-                     "expected another file than .npy, as answers with \"hits\" or \"skip_overlapping\" have lists "
-                     "(query \"" +
-                         *queries.modes().listed + "\")");
-  }
   part.queries = queries.count();
   if (!shard.empty()) part.shard = shardFrom(shard);
   part.fingerprint = queries.fingerprint();

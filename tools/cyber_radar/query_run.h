@@ -21,6 +21,8 @@ struct RunOptions {
   void check() const;
   /// What the run writes. Throws InputError that names the option.
   Outputs outputs() const;
+  /// Throws InputError if answers to these queries cannot be written as the options say.
+  void checkFormat(const QueryFile& queries) const;
   /// What the answers of this run are part of. In mode sampled, opens what `answering` needs.
   Part part(const QueryFile& queries, Answering& answering) const;
 };

@@ -1,0 +1,145 @@
+#include "batch/query_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <vector>
+
+#include "batch/query_file.h"
+#include "import/float_vertices.h"
+#include "workloads/query_fields.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr std::string_view kLater[] = {"rotation"};
+
+std::array<double, 3> readVector(const JsonValue& list) {
+  if (list.size() != 3) list.expected("3 numbers");
+  return {list[0].number(), list[1].number(), list[2].number()};
+}
+
+void readField(const JsonValue& value, const QueryField& field, QuerySpec& to) {
+  const nlohmann::json& json = value.json();
+  double number = HUGE_VAL;
+  bool fits = true;
+  if (field.kind() == 'b') {
+    number = value.boolean();
+  } else if (!field.word || json != field.word) {
+    fits = field.kind() == 'u' ? json.is_number_unsigned() : json.is_number();
+    number = fits ? json.get<double>() : 0;
+  }
+  if (!fits || !setValue(to, field, number)) value.expected(expectedFor(field));
+}
+
+void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
+  for (const QueryField& field : queryFields()) {
+    query.ifHas(field.name, [&](const JsonValue& value) {
+      if (field.kind() != 'o') return readField(value, field, to);
+      value.forEach(
+          [&](const JsonValue& id) { to.exclude.push_back(id.index(objects, "objects of the query's scene")); });
+    });
+  }
+  if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
+}
+
+}  // namespace
+
+void requireKnownKeys(const JsonValue& object, std::span<const std::string_view> known) {
+  object.requireObject();
+  for (const auto& [key, value] : object.json().items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    std::string list;
+    for (std::string_view name : known) list.append(list.empty() ? "" : ", ").append(name);
+    const bool isLater = std::find(std::begin(kLater), std::end(kLater), key) != std::end(kLater);
+    object.member(key.c_str())
+        .refuse("expected one of the keys " + list + ", got \"" + printable(key, 60) + "\"" +
+                (isLater ? ", which is reserved for a later version" : ""));
+  }
+}
+
+std::array<double, 3> motionFrom(const JsonValue& list, size_t first) {
+  std::array<double, 3> motion{};
+  for (size_t k = 0; k < 3; ++k) {
+    motion[k] = list[first + k].number();
+    if (std::abs(motion[k]) > 0x1p1000) list[first + k].expected("a number of at most 2^1000");
+  }
+  return motion;
+}
+
+Instance instanceFrom(const JsonValue& list, std::span<const std::array<double, 3>> bases) {
+  const size_t count = list.size();
+  if (count != 1 && count != 13) list.expected("a mesh index, alone or followed by 12 numbers");
+  Instance instance;
+  instance.mesh = list[0].index(bases.size(), "meshes");
+  for (size_t i = 1; i < count; ++i) instance.worldFromMesh.m[i - 1] = list[i].number();
+  if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) list.refuse(wrong);
+  instance.worldFromMesh = aboutBase(instance.worldFromMesh, bases[instance.mesh]);
+  return instance;
+}
+
+QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<const std::array<double, 3>> bases) {
+  static const std::vector<std::string_view> kKnown = [] {
+    std::vector<std::string_view> known{"id", "scene", "batch", "sensor", "dir", "D", "motion", "mode"};
+    for (const QueryField& field : queryFields()) known.emplace_back(field.name);
+    return known;
+  }();
+  requireKnownKeys(query, kKnown);
+  QuerySpec spec;
+  spec.id = query.member("id").string();
+  if (!query.has("scene")) {
+    query.refuse("expected the key \"scene\", the number of the query's scene, from 0, which is missing");
+  }
+  spec.scene = query.member("scene").index(world.scenes.size(), "scenes");
+  query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
+  spec.setSensor(instanceFrom(query.member("sensor"), bases));
+  if (query.has("motion")) {
+    for (const char* other : {"dir", "D"}) {
+      if (query.has(other)) query.member(other).refuse("expected either \"dir\" and \"D\" or \"motion\", got both");
+    }
+    const JsonValue motion = query.member("motion");
+    if (motion.size() != 3) motion.expected("3 numbers");
+    spec.motion = motionFrom(motion, 0);
+  } else {
+    const JsonValue direction = query.member("dir");
+    spec.direction = readVector(direction);
+    if (spec.direction == std::array<double, 3>{}) direction.expected("a vector that is not zero");
+    const JsonValue distance = query.member("D");
+    spec.distance = distance.numberFrom0();
+    if (spec.distance > 0x1p1000 && !world.scenes[spec.scene].motions.empty()) {
+      distance.expected("at most 2^1000 in a scene with motions");
+    }
+  }
+  readFields(query, world.objectCount(spec.scene), spec);
+  query.ifHas("mode", [&](const JsonValue& mode) {
+    const std::string name = mode.string();
+    spec.mode = mode.guard([&] { return modeFrom(name); });
+    const std::string reason = exactOnly(world, spec);
+    if (spec.mode == AnswerMode::sampled && !reason.empty())
+      mode.expected("contact or reference, as " + reason + " needs");
+  });
+  return spec;
+}
+
+std::string exactOnly(const Workload& workload, const QuerySpec& query) {
+  if (query.motion) return "\"motion\"";
+  if (!workload.scenes[query.scene].motions.empty()) return "a scene with \"motions\"";
+  const QueryField* const field = exactOnly(query);
+  return field ? "\"" + std::string(field->name) + "\"" : "";
+}
+
+const char* nameOf(AnswerMode mode) {
+  constexpr const char* kNames[] = {"sampled", "contact", "reference"};
+  return kNames[static_cast<size_t>(mode)];
+}
+
+AnswerMode modeFrom(std::string_view name) {
+  for (AnswerMode mode : {AnswerMode::sampled, AnswerMode::contact, AnswerMode::reference}) {
+    if (name == nameOf(mode)) return mode;
+  }
+  throw std::invalid_argument("expected mode sampled, contact or reference, got \"" + std::string(name) + "\"");
+}
+
+}  // namespace radar::tools

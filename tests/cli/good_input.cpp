@@ -182,7 +182,7 @@ TEST_CASE("workload writes the same files each time, and query answers them") {
       REQUIRE(written.status == 0);
     }
     CHECK(folder.read("one/queries.json") == folder.read("two/queries.json"));
-    CHECK(folder.read("one/scene-0.inst") == folder.read("two/scene-0.inst"));
+    CHECK(folder.read("one/scene-0.npy") == folder.read("two/scene-0.npy"));
     const Run run = runProgram(folder, "query one/queries.json");
     CHECK(run.status == 0);
     CHECK(linesOf(run.out).size() >= 4);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "batch/binary_queries.h"
 #include "cli/program.h"
 #include "support/catch.h"
 
@@ -17,11 +18,12 @@ namespace {
 // Names every kind of file that a query file may name; links and other names lead to some of them.
 void makeFiles(const ScratchFolder& folder) {
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\no one\nf 1 2 3\n");
-  folder.write("a.inst", "0 1 0 0 0 0 1 0 0 0 0 1 5\n");
+  radar::tools::writePlaced(std::vector<radar::tools::Instance>{{0, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5}}}},
+                            folder.path() / "a.npy");
   const float positions[9] = {0, 0, 0, 4, 0, 0, 0, 4, 0};
   folder.write("a.f32", {reinterpret_cast<const char*>(positions), sizeof positions});
   folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj#one"],
-    "scenes": [{"instances_file": "a.inst"}, {"instances": [[0]], "deforms": [[0, "a.f32"]]}, {"assembly": "a.obj"}],
+    "scenes": [{"instances_file": "a.npy"}, {"instances": [[0]], "deforms": [[0, "a.f32"]]}, {"assembly": "a.obj"}],
     "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0,0,1], "D": 8}]})");
   std::filesystem::create_symlink("q.json", folder.path() / "link");
   std::filesystem::create_symlink("nothing-yet", folder.path() / "ahead");
@@ -56,7 +58,7 @@ TEST_CASE("an output that is an input, by whatever name, is refused before any w
   const ScratchFolder folder;
   makeFiles(folder);
   for (const char* option : {"--out", "--stats"}) {
-    for (const char* file : {"q.json", "./d/../q.json", "link", "a.obj", "second-name", "a.inst", "a.f32"}) {
+    for (const char* file : {"q.json", "./d/../q.json", "link", "a.obj", "second-name", "a.npy", "a.f32"}) {
       requireRefused(folder, kQuery + option + " " + file,
                      std::string(option) + ": " + file + ": expected another file than those that are read, got ");
     }

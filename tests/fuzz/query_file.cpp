@@ -4,6 +4,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "batch/binary_queries.h"
 #include "batch/query_file.h"
 #include "fuzz/check_batch.h"
 #include "fuzz/target.h"
@@ -23,7 +24,10 @@ struct Files {
     folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.write("b.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
     folder.write("parts.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\no x\nf 1 2 3\no y\nf 1 3 4\no x z\nl 1 2\n");
-    folder.write("instances.stl", "0\n1 1 0 0 3 0 1 0 0 0 0 1 0\n0 2 0 0 0 0 2 0 0 0 0 2 -3.5e0\n");
+    tools::writePlaced(
+        std::vector<tools::Instance>{
+            {0, {}}, {1, {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0}}}, {0, {{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, -3.5}}}},
+        folder.path() / "instances.stl");
     folder.write("broken.stl", "0 1\n");
     std::string floats(9 * sizeof(float), '\0');
     floats[15] = '\x40';
@@ -97,7 +101,8 @@ std::vector<std::string> seeds() {
  "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0, 0, 1], "D": 8},
  {"id": "q", "scene": 1, "batch": 3, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "exclude": [2], "dir": [0, -0.5, 1],
   "D": 0, "mask": 5, "decide": true, "mode": "sampled", "speed": 2.5, "tolerance": 0.25}]})",
-      head + R"([{"file": "a.obj", "scale": 0.001}, "b.off", "parts.obj#1", "parts.obj#x z"], "scenes": [], "queries": []})",
+      head +
+          R"([{"file": "a.obj", "scale": 0.001}, "b.off", "parts.obj#1", "parts.obj#x z"], "scenes": [], "queries": []})",
       head +
           R"(["a.obj", "b.off", "parts.obj#1"], "scenes": [{"instances_file": "instances.stl", "motions": [[1, 0, 0, -3]]}],
  "queries": [{"id": "p", "scene": 0, "sensor": [1, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "motion": [0, 0.5, 4], "hits": "all"},

@@ -1,6 +1,7 @@
 // Mesh files whose numbers floats cannot hold, or whose axes and units are not the program's.
 #include <cmath>
 
+#include "batch/binary_queries.h"
 #include "batch/query_file.h"
 #include "mesh_texts.h"
 #include "workloads/random.h"
@@ -104,10 +105,11 @@ TEST_CASE("objects, sensors and deformations of a query file are where the numbe
     radar::test::append(bytes, x);
   }
   folder.write("moved.f32", bytes);
-  folder.write("objects.txt", "0 1 0 0 -512340 0 1 0 -4512350 0 0 1 -296\n1\n0\n");
+  writePlaced(std::vector<Instance>{{0, {{1, 0, 0, -512340, 0, 1, 0, -4512350, 0, 0, 1, -296}}}, {1, {}}, {}},
+              folder.path() / "objects.npy");
   const std::string file =
       folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["wall.obj", "small.obj"],
-    "scenes": [{"instances_file": "objects.txt", "deforms": [[0, "moved.f32"]]},
+    "scenes": [{"instances_file": "objects.npy", "deforms": [[0, "moved.f32"]]},
                {"instances": [[0], [0, 2,0,0,0, 0,2,0,0, 0,0,2,0]]}],
     "queries": [{"id": "a", "scene": 0, "sensor": [0, 1,0,0,-512340, 0,1,0,-4512350, 0,0,1,-296], "dir": [1, 0, 0], "D": 1}]})");
   std::vector<std::string> warnings;

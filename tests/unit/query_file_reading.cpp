@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "batch/binary_queries.h"
 #include "batch/query_file.h"
 #include "support/catch.h"
 #include "support/scratch_folder.h"
@@ -226,38 +227,49 @@ TEST_CASE("text that is not JSON is refused with line, column and path") {
   CHECK_THAT(files.refusal(std::string(200'000, '[')), StartsWith("expected at most 100 levels"));
 }
 
-TEST_CASE("an instance file is read line by line, and the message about a bad line gives its number") {
+TEST_CASE("an instance file is an array of meshes and poses, and the message about a bad row gives its number") {
   Files files;
   nlohmann::json file = goodFile();
-  file["scenes"][0] = {{"id", "a"}, {"instances_file", "a.inst"}};
+  file["scenes"][0] = {{"id", "a"}, {"instances_file", "a.npy"}};
   const std::string text = file.dump();
-  const std::string good = "0 1 0 0 0.1 0 1 0 0 0 0 1 -2e-3\r\n0\n";
-  files.folder.write("a.inst", good + "\n");
-  const Workload workload = files.read(text);
-  REQUIRE(workload.scenes[0].instances.size() == 2);
-  CHECK(workload.scenes[0].instances[0].worldFromMesh.m[3] == 0.1);
-  CHECK(workload.scenes[0].instances[0].worldFromMesh.m[11] == -2e-3);
-  CHECK(workload.scenes[0].instances[1] == Instance{});
-  for (const char* line : {"1", "-1", "0.5", "nan", "0 1", "0 1 0 0 x 0 1 0 0 0 0 1 0", "0 1 0 0 inf 0 1 0 0 0 0 1 0",
-                           "0 1 0 0 0 0 0 0 0 0 0 1 0", "0 1 0 0 0 0 1 0 0 0 0 1 0 5", "0,1", "\n0"}) {
-    CAPTURE(line);
-    files.folder.write("a.inst", good + line + "\n");
-    CHECK_THAT(files.refusal(text),
-               StartsWith("scenes[0].instances_file: ") && Contains("a.inst: line 3: ") && Contains("expected"));
-  }
-  std::filesystem::remove(files.folder.path() / "a.inst");
-  CHECK_THAT(files.refusal(text), StartsWith("scenes[0].instances_file: ") && Contains("a.inst"));
+  const std::array<Instance, 2> good{Instance{}, {0, {{1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, -2e-3}}}};
+  const auto refused = [&](const std::vector<Instance>& rows) {
+    writePlaced(rows, files.folder.path() / "a.npy");
+    return files.refusal(text);
+  };
+  writePlaced(good, files.folder.path() / "a.npy");
+  CHECK(std::ranges::equal(files.read(text).scenes[0].instances, good));
+  const std::string bytes = files.folder.read("a.npy"), place = "scenes[0].instances_file: ";
+  CHECK_THAT(refused({good[0], {1, {}}}),
+             StartsWith(place) && Contains("a.npy: mesh[1]: expected a whole number that names one of the 1 meshes"));
+  CHECK_THAT(refused({{0, {{1, 0, 0, HUGE_VAL, 0, 1, 0, 0, 0, 0, 1, 0}}}}), StartsWith(place) && Contains("pose[0]: "));
+  CHECK_THAT(refused({{0, {{0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}}}), Contains("pose[0]: expected an invertible"));
+  const auto refusedBytes = [&](const std::string& content) {
+    files.folder.write("a.npy", content);
+    return files.refusal(text);
+  };
+  // As instance files were before.
+  CHECK_THAT(refusedBytes("0 1 0 0 0.1 0 1 0 0 0 0 1 -2e-3\n0\n"),
+             StartsWith(place) && Contains("a.npy: expected an array in numpy's format .npy"));
+  CHECK_THAT(refusedBytes(""), StartsWith(place) && Contains("expected an array"));
+  CHECK_THAT(refusedBytes(bytes + "0"), Contains("expected 2 rows of 100 bytes, got 201 bytes"));
+  std::string renamed = bytes;
+  renamed.replace(renamed.find("pose"), 4, "Pose");
+  CHECK_THAT(refusedBytes(renamed), Contains("pose: expected this column, which is missing"));
+  CHECK_THAT(refusedBytes(npyHeader("[('mesh', '|u1'), ('pose', '<f8', (3, 4)), ('mask', '<u4')]", 0)),
+             Contains("mask: expected one of the columns mesh, pose"));
+  std::filesystem::remove(files.folder.path() / "a.npy");
+  CHECK_THAT(files.refusal(text), StartsWith(place) && Contains("a.npy"));
 }
 
 TEST_CASE("a fingerprint tells files apart that have other answers, and no two forms of a mesh") {
   Files files;
   nlohmann::json file = goodFile();
-  file["scenes"][0] = {{"instances_file", "a.inst"}, {"deforms", {{0, "p.f32"}}}};
+  file["scenes"][0] = {{"instances_file", "a.npy"}, {"deforms", {{0, "p.f32"}}}};
   file["scenes"].push_back({{"assembly", "b.obj"}});
-  const auto write = [&](const std::string& mesh, const std::string& instances, const std::string& positions,
-                         const std::string& assembly) {
+  const auto write = [&](const std::string& mesh, double x, const std::string& positions, const std::string& assembly) {
     files.folder.write("a.obj", mesh);
-    files.folder.write("a.inst", instances);
+    writePlaced(std::vector<Instance>{{0, {{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}}, {}}, files.folder.path() / "a.npy");
     files.folder.write("p.f32", positions);
     files.folder.write("b.obj", assembly);
   };
@@ -268,19 +280,19 @@ TEST_CASE("a fingerprint tells files apart that have other answers, and no two f
   const std::string mesh = kMesh, zeros(36, 0), parts = mesh + "o lid\nf 1 3 2\n";
   std::string moved = zeros;
   moved[0] = 1;
-  write(mesh, "0\n0\n", zeros, parts);
+  write(mesh, 0, zeros, parts);
   const std::string first = fingerprint();
-  write("# a triangle\n" + mesh, "0\n0\n", zeros, parts);
+  write("# a triangle\n" + mesh, 0, zeros, parts);
   CHECK(fingerprint() == first);
-  write("v 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "0\n0\n", zeros, parts);
+  write("v 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 0, zeros, parts);
   CHECK(fingerprint() != first);
-  write(mesh, "0\n0", zeros, parts);
+  write(mesh, 1e-9, zeros, parts);
   CHECK(fingerprint() != first);
-  write(mesh, "0\n0\n", moved, parts);
+  write(mesh, 0, moved, parts);
   CHECK(fingerprint() != first);
-  write(mesh, "0\n0\n", zeros, mesh + "o roof\nf 1 3 2\n");
+  write(mesh, 0, zeros, mesh + "o roof\nf 1 3 2\n");
   CHECK(fingerprint() != first);
-  write(mesh, "0\n0\n", zeros, parts);
+  write(mesh, 0, zeros, parts);
   CHECK(fingerprint() == first);
   file["queries"][0]["D"] = 9;
   CHECK(fingerprint() != first);

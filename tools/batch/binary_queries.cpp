@@ -25,10 +25,14 @@ std::string among(size_t count, const char* what) {
 }  // namespace
 
 BinaryQueries::BinaryQueries(const std::filesystem::path& file, const Workload& world,
-                             std::vector<std::array<double, 3>> bases)
+                             std::vector<std::array<double, 3>> bases, bool placesOnly)
     : name_(file.string()), world_(world), bases_(std::move(bases)), columns_(file) {
   mesh_ = column("mesh", "iu", {}, true);
   pose_ = column("pose", "f", {3, 4}, true);
+  if (placesOnly) {
+    requireKnownColumns();
+    return;
+  }
   motion_ = column("motion", "f", {3}, false);
   direction_ = column("dir", "f", {3}, !motion_);
   distance_ = column("D", "f", {}, !motion_);
@@ -46,6 +50,10 @@ BinaryQueries::BinaryQueries(const std::filesystem::path& file, const Workload& 
                                                    : "iu",
                              field.kind() == 'o' && found ? found->shape : std::vector<uint64_t>(), false));
   }
+  requireKnownColumns();
+}
+
+void BinaryQueries::requireKnownColumns() const {
   for (const Column& given : columns_.all()) {
     if (std::ranges::count(known_, given.name) > 0) continue;
     std::string list;
@@ -127,6 +135,16 @@ void BinaryQueries::readField(const QueryField& field, const Column& column, uin
                            : ""));
 }
 
+Instance BinaryQueries::placed(uint64_t index) const {
+  if (bases_.empty()) throw InputError(name_, "mesh", "expected a query file with a mesh");
+  Instance instance;
+  instance.mesh = static_cast<uint32_t>(whole(*mesh_, index, bases_.size() - 1, among(bases_.size(), "meshes")));
+  for (uint64_t k = 0; k < 12; ++k) instance.worldFromMesh.m[k] = pose_->real(index, k);
+  if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) refuse(*pose_, index, wrong);
+  instance.worldFromMesh = aboutBase(instance.worldFromMesh, bases_[instance.mesh]);
+  return instance;
+}
+
 QuerySpec BinaryQueries::read(uint64_t index) const {
   QuerySpec query;
   query.id = std::to_string(index);
@@ -134,11 +152,7 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   if (scenes == 0) throw InputError(name_, "", "expected a query file with a scene");
   if (scene_) query.scene = static_cast<uint32_t>(whole(*scene_, index, scenes - 1, among(scenes, "scenes")));
   if (batch_) query.batch = whole(*batch_, index, ~uint64_t{0}, "a whole number from 0");
-  if (bases_.empty()) throw InputError(name_, "mesh", "expected a query file with a mesh");
-  query.mesh = static_cast<uint32_t>(whole(*mesh_, index, bases_.size() - 1, among(bases_.size(), "meshes")));
-  for (uint64_t k = 0; k < 12; ++k) query.worldFromMesh.m[k] = pose_->real(index, k);
-  if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) refuse(*pose_, index, wrong);
-  query.worldFromMesh = aboutBase(query.worldFromMesh, bases_[query.mesh]);
+  query.setSensor(placed(index));
   readMove(query, index);
   for (size_t i = 0; i < fields_.size(); ++i) {
     if (!fields_[i]) continue;
@@ -216,6 +230,15 @@ void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesyste
     for (const auto& append : parts) append(query);
   }
   writeAtomically(file, npyHeader(type + "]", queries.size()) + rows);
+}
+
+void writePlaced(std::span<const Instance> instances, const std::filesystem::path& file) {
+  std::string rows;
+  for (const Instance& instance : instances) {
+    appendBytes(rows, instance.mesh);
+    appendBytes(rows, instance.worldFromMesh.m);
+  }
+  writeAtomically(file, npyHeader("[('mesh', '<u4'), ('pose', '<f8', (3, 4))]", instances.size()) + rows);
 }
 
 }  // namespace radar::tools

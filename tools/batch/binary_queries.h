@@ -16,11 +16,15 @@ class BinaryQueries {
  public:
   /// `world`: the meshes and scenes that the queries name; the first ones, of these bases, may be sensors. Checks
   /// names, types and shapes of the columns. Throws InputError that names file and column. `world` must outlive this.
-  BinaryQueries(const std::filesystem::path& file, const Workload& world, std::vector<std::array<double, 3>> bases);
+  /// `placesOnly`: the rows are placed meshes, for placed(), and no queries.
+  BinaryQueries(const std::filesystem::path& file, const Workload& world, std::vector<std::array<double, 3>> bases,
+                bool placesOnly = false);
 
   uint64_t count() const { return columns_.rows(); }
   /// A query; its id is its index. Throws InputError that names file, column and index if a value breaks its contract.
   QuerySpec read(uint64_t index) const;
+  /// What `mesh` and `pose` say, likewise.
+  Instance placed(uint64_t index) const;
   /// The whole file.
   std::string_view bytes() const { return columns_.bytes(); }
 
@@ -30,6 +34,7 @@ class BinaryQueries {
   double finite(const Column& column, uint64_t index, uint64_t part = 0) const;
   void readMove(QuerySpec& query, uint64_t index) const;
   void readField(const QueryField& field, const Column& column, uint64_t index, QuerySpec& query) const;
+  void requireKnownColumns() const;
   [[noreturn]] void refuse(const Column& column, uint64_t index, const std::string& problem) const;
 
   std::string name_;
@@ -37,12 +42,15 @@ class BinaryQueries {
   std::vector<std::array<double, 3>> bases_;
   Columns columns_;
   std::vector<std::string> known_;
-  const Column *mesh_, *pose_, *direction_, *distance_, *motion_, *scene_, *batch_, *mode_;
+  const Column *mesh_, *pose_;
+  const Column *direction_ = nullptr, *distance_ = nullptr, *motion_ = nullptr, *scene_ = nullptr, *batch_ = nullptr,
+               *mode_ = nullptr;
   std::vector<const Column*> fields_;  ///< of queryFields()
 };
 
 /// Writes queries as such a file; their ids are not kept.
 void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesystem::path& file);
+void writePlaced(std::span<const Instance> instances, const std::filesystem::path& file);
 
 /// The bytes of a number as files hold it.
 template <class Value>

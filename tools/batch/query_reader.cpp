@@ -1,15 +1,13 @@
-#include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <iostream>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <span>
 #include <unordered_set>
 
+#include "batch/binary_queries.h"
 #include "batch/query_file.h"
 #include "batch/query_json.h"
 #include "batch/query_reader.h"
@@ -19,22 +17,6 @@
 namespace radar::tools {
 
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-/// One line of an instance file; `numbers` holds 13 at most. Returns how many there are, 0 if one is none.
-size_t readNumbers(std::string_view line, std::span<double> numbers) {
-  size_t count = 0;
-  while (true) {
-    line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-    if (line.empty()) return count;
-    if (count == numbers.size()) return 0;
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), numbers[count]);
-    const size_t length = static_cast<size_t>(end - line.data());
-    if (error != std::errc() || (length < line.size() && kBlanks.find(line[length]) == kBlanks.npos)) return 0;
-    line.remove_prefix(length);
-    ++count;
-  }
-}
 
 /// A mesh file, or a node of one.
 struct MeshSource {
@@ -256,36 +238,10 @@ std::vector<float> Reader::readPositions(const std::filesystem::path& file, uint
 }
 
 std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) {
-  const std::string content = readRegularFile(file, "an instance file");
-  fingerprint_.add(content);
-  std::string_view rest = content;
+  const BinaryQueries rows(file, workload_, bases_, true);
+  fingerprint_.add(rows.bytes());
   std::vector<Instance> instances;
-  // Only the last line may be blank.
-  rest = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);
-  for (size_t number = 1; !rest.empty(); ++number) {
-    const std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    const auto refuse = [&](const std::string& problem) {
-      throw InputError(file.string(), "line " + std::to_string(number), problem);
-    };
-    const auto expected = [&](const std::string& what) {
-      refuse("expected " + what + ", got \"" + std::string(line.substr(0, 60)) + "\"");
-    };
-    std::array<double, 13> numbers{};
-    const size_t count = readNumbers(line, numbers);
-    if (count != 1 && count != 13) {
-      expected("a mesh index, alone or followed by 12 numbers, separated by blanks");
-    }
-    const size_t meshes = bases_.size();
-    if (!(numbers[0] >= 0 && numbers[0] < double(meshes) && std::floor(numbers[0]) == numbers[0])) {
-      expected("first a whole number that names one of the " + std::to_string(meshes) + " meshes, from 0");
-    }
-    Instance instance{static_cast<uint32_t>(numbers[0]), {}};
-    if (count == 13) std::copy(numbers.begin() + 1, numbers.end(), instance.worldFromMesh.m.begin());
-    if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) refuse(wrong);
-    instance.worldFromMesh = aboutBase(instance.worldFromMesh, bases_[instance.mesh]);
-    instances.push_back(instance);
-  }
+  for (uint64_t i = 0; i < rows.count(); ++i) instances.push_back(rows.placed(i));
   return instances;
 }
 

@@ -26,18 +26,13 @@ std::string plyOf(const MeshData& mesh) {
   return bytes;
 }
 
-void appendInstance(std::string& text, const Instance& instance, const char* separator) {
-  text += std::to_string(instance.mesh);
-  if (instance.worldFromMesh == Transform{}) return;
+std::string instanceText(const Instance& instance) {
+  std::string text = "[" + std::to_string(instance.mesh);
+  if (instance.worldFromMesh == Transform{}) return text + "]";
   for (double value : instance.worldFromMesh.m) {
-    text += separator;
+    text += ",";
     appendNumber(text, value);
   }
-}
-
-std::string instanceText(const Instance& instance) {
-  std::string text = "[";
-  appendInstance(text, instance, ",");
   return text + "]";
 }
 
@@ -130,13 +125,8 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
     const SceneSpec& scene = workload.scenes[i];
     std::string instanceFile;
     if (scene.instances.size() > kMostInline) {
-      instanceFile = "scene-" + std::to_string(i) + ".inst";
-      std::string lines;
-      for (const Instance& instance : scene.instances) {
-        appendInstance(lines, instance, " ");
-        lines += "\n";
-      }
-      writeAtomically(folder / instanceFile, lines);
+      instanceFile = "scene-" + std::to_string(i) + ".npy";
+      writePlaced(scene.instances, folder / instanceFile);
     }
     for (const Deformation& deformed : scene.deforms) {
       std::string bytes;

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include <vulkan/vulkan.h>
+#include "embed/execute.h"
 #include "embed/host.h"
 #include "support/catch.h"
 #include "support/small_scenes.h"
@@ -65,6 +66,28 @@ TEST_CASE("the engine uses only the host's function loader, allocator and pipeli
   // The engine does not even look up functions that wait for the host's own work.
   for (const char* never : {"vkDeviceWaitIdle", "vkQueueWaitIdle"}) CHECK_FALSE(test::isLookedUp(never));
   vkDestroyPipelineCache(host.handles.device, cache, nullptr);
+}
+
+TEST_CASE("each label that begins in a command buffer ends there, and none begins unless the host asks for them") {
+  Boxes boxes;
+  test::Host host;
+  const test::TrueLabels reached;
+  const auto begun = [] { return test::callsOf("vkCmdBeginDebugUtilsLabelEXT"); };
+  const auto ended = [] { return test::callsOf("vkCmdEndDebugUtilsLabelEXT"); };
+  const auto work = [&] {
+    const Device device = Device::adopt(host.handles);
+    for (const Mode mode : kModes) CHECK(boxes.sweep(device, mode).status == Status::hit);
+    Recorder recorder(device, boxes.scene);
+    CHECK(test::execute(device, recorder, std::span(&boxes.query, 1)).results[0].status == Status::hit);
+  };
+  const uint64_t begunBefore = begun(), endedBefore = ended();
+  work();
+  CHECK(begun() > begunBefore + 10);
+  CHECK(ended() - endedBefore == begun() - begunBefore);
+  const uint64_t asked = begun();
+  host.handles.debugNames = false;
+  work();
+  CHECK(begun() == asked);
 }
 
 TEST_CASE("adopt throws and names a function that the host's loader lacks") {

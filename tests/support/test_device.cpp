@@ -94,9 +94,15 @@ DeviceOptions deviceOptions() {
   return {.index = testedDevices()[0], .onValidation = onValidation, .doubles = wantsDoubles()};
 }
 
+Device open(const DeviceOptions& options) {
+  Device opened = Device::open(options);
+  opened.impl().host.debugNames = false;
+  return opened;
+}
+
 const Device& device() {
   return onceInRun([] {
-    Device opened = Device::open(deviceOptions());
+    Device opened = open();
     if (settingOf("RADAR_TEST_KIND", "") == "gpu") {
       opened.impl().properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     }

@@ -32,7 +32,7 @@ struct Fault {
 Fault fault;
 std::atomic<int64_t> live{0};
 std::atomic<uint64_t> allocatedBytes{0};
-std::atomic<bool> areHollow{false}, areInTurn{false};
+std::atomic<bool> areHollow{false}, areInTurn{false}, areLabelled{false};
 std::atomic<VkPipelineCache> pipelineCache{VK_NULL_HANDLE};
 std::atomic<uint32_t> visibleTypes{0};  // a bit for each type of memory that a host can map
 std::mutex turns;
@@ -176,7 +176,8 @@ struct Wrapped<Member> {
       driver(args...);
       told(args...);
     } else {
-      return driver(args...);
+      const bool isLabel = std::string_view(name).ends_with("DebugUtilsLabelEXT");
+      return isLabel && !areLabelled ? R() : driver(args...);
     }
   }
 
@@ -308,6 +309,14 @@ HollowPipelines::HollowPipelines() {
 
 HollowPipelines::~HollowPipelines() {
   areHollow = false;
+}
+
+TrueLabels::TrueLabels() {
+  areLabelled = true;
+}
+
+TrueLabels::~TrueLabels() {
+  areLabelled = false;
 }
 
 }  // namespace radar::test

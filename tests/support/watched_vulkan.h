@@ -9,7 +9,7 @@
 
 namespace radar::test {
 
-/// The loader, for HostDevice::getInstanceProcAddr.
+/// The loader, for HostDevice::getInstanceProcAddr. Labels are counted, but reach no driver (test::open() says why).
 PFN_vkGetInstanceProcAddr watchedLoader();
 
 /// Whether an engine has looked a function up since the program began.
@@ -81,6 +81,15 @@ class HollowPipelines {
   ~HollowPipelines();
   HollowPipelines(const HollowPipelines&) = delete;
   HollowPipelines& operator=(const HollowPipelines&) = delete;
+};
+
+/// While one lives, labels reach the driver.
+class TrueLabels {
+ public:
+  TrueLabels();
+  ~TrueLabels();
+  TrueLabels(const TrueLabels&) = delete;
+  TrueLabels& operator=(const TrueLabels&) = delete;
 };
 
 }  // namespace radar::test

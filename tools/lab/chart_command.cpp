@@ -85,18 +85,19 @@ Json measure(const Options& options) {
   const std::vector<Case> cases = casesOf(options, extent);
   const Device device = Device::open({.index = number});
   makeFolder("--out", options.out);
+  const std::vector<BaselineRow> libraries = peerRows();
   const auto methods = [&](const std::string& section) {
     const uint32_t threads = std::max(1u, std::thread::hardware_concurrency());
     std::vector<Method> all = ours(device, section, extent, threads);
-    for (Method& method : others(section, extent, threads)) all.push_back(std::move(method));
+    for (Method& method : others(libraries, section, extent, threads)) all.push_back(std::move(method));
     return all;
   };
   Json report = newReport("Cyber Radar: accuracy against speed", {{"device", device.name() + ", " + device.driver()}});
-  Json libraries = Json::array();
-  for (const BaselineRow& row : peerRows()) {
-    libraries.push_back({{"library", row.family}, {"product", row.product}, {"limits", row.limits}});
+  Json rows = Json::array();
+  for (const BaselineRow& row : libraries) {
+    rows.push_back({{"library", row.family}, {"product", row.product}, {"limits", row.limits}});
   }
-  if (!libraries.empty()) setRows(report, "libraries", "Other libraries, and what they cannot do", libraries);
+  if (!rows.empty()) setRows(report, "libraries", "Other libraries, and what they cannot do", rows);
   size_t cells = 0;
   for (const Case& one : cases) cells += methods(one.section).size();
   Progress progress("measuring", cells);

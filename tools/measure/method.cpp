@@ -7,7 +7,6 @@
 #include <optional>
 #include <thread>
 
-#include "baselines/baseline.h"
 #include "radar/cpu_sweeper.h"
 
 namespace radar::tools {
@@ -137,10 +136,11 @@ std::vector<Method> ours(const Device& device, const std::string& section, Exten
   return methods;
 }
 
-std::vector<Method> others(const std::string& section, Extent extent, uint32_t threads) {
+std::vector<Method> others(std::span<const BaselineRow> rows, const std::string& section, Extent extent,
+                           uint32_t threads) {
   const bool full = extent == Extent::full;
   std::vector<Method> methods;
-  for (const BaselineRow& row : peerRows()) {
+  for (const BaselineRow& row : rows) {
     if (!has(row.sections, section) || (section == "growth" && !full)) continue;
     for (const uint32_t size : sizesOf(row, section, extent)) {
       const auto add = [&](uint32_t number) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "baselines/baseline.h"
 #include "measure/case.h"
 #include "measure/timing.h"
 
@@ -27,8 +29,9 @@ struct Method {
 /// Ours on each case of a section, in the order of its rows, with up to `threads` of the processor. The device outlives
 /// them.
 std::vector<Method> ours(const Device& device, const std::string& section, Extent extent, uint32_t threads);
-/// Those of the baselines that are built. A full run measures all sizes, on one thread and on all; others three sizes,
-/// on all where the library can.
-std::vector<Method> others(const std::string& section, Extent extent, uint32_t threads);
+/// Those of other libraries. A full run measures all sizes, on one thread and on all; others three sizes, on all where
+/// the library can.
+std::vector<Method> others(std::span<const BaselineRow> rows, const std::string& section, Extent extent,
+                           uint32_t threads);
 
 }  // namespace radar::tools

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "support/catch.h"
 #include "support/scratch_folder.h"
@@ -18,8 +19,12 @@ Json pointOf(const std::string& name, int linetype, double us, double wrong, dou
           {"us", us},     {"wrong_percent", wrong}, {"worst_error", error}};
 }
 
-bool isSvg(const std::string& text) {
-  return text.starts_with("<?xml") && text.ends_with("</svg>\n\n") && text.find("nan") == std::string::npos;
+// The marks of a whole picture: those of points, and others that do not depend on them.
+size_t marksOf(const std::string& svg) {
+  REQUIRE((svg.starts_with("<?xml") && svg.ends_with("</svg>\n\n") && svg.find("nan") == std::string::npos));
+  size_t marks = 0;
+  for (size_t at = 0; (at = svg.find("<use xlink:href='#gpPt", at)) != std::string::npos; ++at) ++marks;
+  return marks;
 }
 
 }  // namespace
@@ -32,7 +37,8 @@ TEST_CASE("lines are drawn in a panel for each column, with every name in the ke
   }
   const std::string svg =
       plot(kLinesScript, rows, {"Title", "origin", "sensors", "devices", "milliseconds", "speed-up"});
-  CHECK(isSvg(svg));
+  rows.erase(3);
+  CHECK(marksOf(svg) == marksOf(plot(kLinesScript, rows, {"", "", "", "", "", ""})) + 2);
   for (const char* text : {"Title", "origin", "sensors", "devices", "milliseconds", "speed-up", "0", "0+1"}) {
     CHECK_THAT(svg, Contains(std::string("<text>") + text + "</text>"));
   }
@@ -55,7 +61,14 @@ TEST_CASE("a front is drawn of one point, of wrong answers only, and of extreme 
       {pointOf("a", 1, 5, 100, 1), pointOf("front", 21, 5, 100, 1)},
       {pointOf("a", 3, 5, 0, 1e-13), pointOf("a", 3, 5, 0, 1e-13)},
       {pointOf("a", 1, 1e-9, 0.0001, 1), pointOf("a", 1, 1e12, 0, 1e200), pointOf("front", 21, 1e-9, 0.0001, 1)}};
-  for (const std::vector<Json>& rows : fronts) CHECK(isSvg(plot(kFrontScript, rows, {"title", ""})));
+  std::set<size_t> marks;
+  for (const std::vector<Json>& rows : fronts) {
+    CAPTURE(Json(rows).dump());
+    const std::string svg = plot(kFrontScript, rows, {"title", ""});
+    marks.insert(marksOf(svg) - rows.size());
+    CHECK_THAT(svg, Contains("<text>a</text>") && Contains("<text>on the front</text>"));
+  }
+  CHECK(marks.size() == 1);  // whatever the points, each has its mark
 }
 
 TEST_CASE("a script that fails, or has nothing to draw, is an error") {

@@ -2,6 +2,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <new>
@@ -153,8 +154,13 @@ TEST_CASE("an edit waits for the chunks of a batch that ended for lack of memory
   const std::exception_ptr shortage = std::make_exception_ptr(std::bad_alloc());
   queue.abandon(*first, shortage);
   CHECK_THROWS_AS(answers.get(), std::bad_alloc);
-  std::future<void> edit = std::async(std::launch::async, [&] { queue.edit([] {}); });
-  CHECK(edit.wait_for(std::chrono::milliseconds(50)) == std::future_status::timeout);
-  queue.abandon(*second, shortage);
-  edit.get();
+  std::atomic<bool> begins = false, ended = false;
+  const std::jthread other([&] {
+    begins.wait(false);
+    ended = true;
+    queue.abandon(*second, shortage);
+  });
+  begins = true;
+  begins.notify_one();
+  queue.edit([&] { CHECK(ended); });
 }

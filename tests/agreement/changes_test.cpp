@@ -1,13 +1,18 @@
-#include "stability/same_contact.h"
-
+// Changes of a case that keep its first contact to the bit, since every coordinate stays exact in float.
+#include <cmath>
 #include <utility>
 
+#include "agreement/compare.h"
+#include "support/answer.h"
+#include "support/catch.h"
+#include "workloads/hard_cases.h"
 #include "workloads/random_shapes.h"
 #include "workloads/shapes.h"
 
-namespace radar::tools {
-
 namespace {
+
+using namespace radar;
+using namespace radar::tools;
 
 constexpr double kGrid = 0x1p-8;
 
@@ -40,8 +45,8 @@ MeshData cut(const MeshData& mesh, Random& random) {
   return out;
 }
 
-}  // namespace
-
+/// Two shapes of any kind whose coordinates, placed and moved along, are whole multiples of 2^-8 and small; directions
+/// have whole components and a whole length.
 HardCase dyadicCase(Random& random) {
   HardCase hard;
   const auto placed = [&](const Vec3& where) {
@@ -60,6 +65,7 @@ HardCase dyadicCase(Random& random) {
   return hard;
 }
 
+/// Turns everything by quarter turns and moves it, in the poses or in the vertices.
 HardCase movedTogether(const HardCase& hard, Random& random) {
   HardCase out = hard;
   const Vec3 offset = 0.25 * random.wholeVector(1000);
@@ -77,6 +83,7 @@ HardCase movedTogether(const HardCase& hard, Random& random) {
   return out;
 }
 
+/// The object moves towards the sensor instead.
 HardCase changedPlaces(const HardCase& hard) {
   HardCase out = hard;
   std::swap(out.sensor, out.objects.at(0));
@@ -84,6 +91,7 @@ HardCase changedPlaces(const HardCase& hard) {
   return out;
 }
 
+/// Cuts random triangles from a corner to the middle of the opposite edge.
 HardCase cutInTwo(const HardCase& hard, Random& random) {
   HardCase out = hard;
   out.sensor.mesh = cut(hard.sensor.mesh, random);
@@ -91,6 +99,7 @@ HardCase cutInTwo(const HardCase& hard, Random& random) {
   return out;
 }
 
+/// Adds objects that the sensor cannot reach.
 HardCase withFarObjects(const HardCase& hard, Random& random) {
   HardCase out = hard;
   const double beyond = 1000 + 2 * hard.distance;
@@ -101,15 +110,52 @@ HardCase withFarObjects(const HardCase& hard, Random& random) {
   return out;
 }
 
-std::array<HardCase, 2> splitWay(const HardCase& hard, Random& random) {
-  const double length = lengthOf(hard.direction);
-  const auto steps = static_cast<uint32_t>(hard.distance / (0.0625 * length));
-  const double part = 0.0625 * random.below(steps + 1);
-  std::array<HardCase, 2> parts{hard, hard};
-  parts[0].distance = part * length;
-  parts[1].distance = hard.distance - parts[0].distance;
-  moveBy(parts[1].sensor.worldFromMesh, part * hard.direction);
-  return parts;
+/// The case, then changed in each way.
+std::vector<HardCase> changesOf(const HardCase& hard, Random& random) {
+  return {hard, movedTogether(hard, random), changedPlaces(hard), cutInTwo(hard, random), withFarObjects(hard, random)};
 }
 
-}  // namespace radar::tools
+Result exactAnswer(const HardCase& hard) {
+  const Workload workload = sceneOf({hard}, Company::isolated);
+  Scene scene;
+  replaceBy(workload, 0, scene);
+  return test::answer(scene, workload.queries[0]);
+}
+
+}  // namespace
+
+TEST_CASE("moving, swapping, cutting and adding far objects leave the exact answer where it is, to the bit") {
+  uint32_t contacts = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const HardCase hard = dyadicCase(random);
+    const Result exact = exactAnswer(hard);
+    contacts += exact.status != Status::clear;
+    for (const HardCase& changed : changesOf(hard, random)) {
+      const Result again = exactAnswer(changed);
+      CHECK(again.status == exact.status);
+      CHECK(again.t == exact.t);
+    }
+  }
+  CHECK(contacts > 80);
+  CHECK(contacts < 180);
+}
+
+TEST_CASE("of cases whose coordinates are exact, however changed, modes contact and sampled keep every promise") {
+  std::vector<std::vector<HardCase>> changed(5);
+  for (uint64_t seed = 1; seed <= kIsolatedCases; ++seed) {
+    Random random(1'000'003 * seed);
+    const HardCase hard = dyadicCase(random);
+    const std::vector<HardCase> all = changesOf(hard, random);
+    for (size_t i = 0; i < all.size(); ++i) changed[i].push_back(all[i]);
+  }
+  for (size_t i = 0; i < changed.size(); ++i) {
+    CAPTURE(i);
+    const Workload workload = sceneOf(changed[i], Company::isolated);
+    Scene scene;
+    replaceBy(workload, 0, scene);
+    CHECK(test::compare(scene, queriesOf(workload.queries)).tally.contacts() >= 8);
+    CHECK(test::compare(scene, queriesOf(workload.queries, 64), Mode::sampled).found() >= 8);
+  }
+}

@@ -189,29 +189,6 @@ TEST_CASE("workload writes the same files each time, and query answers them") {
   }
 }
 
-TEST_CASE("modes contact and reference report the same contacts") {
-  const ScratchFolder folder;
-  writeTriangles(folder);
-  for (const std::string name : {"table1 --boxes 1000 --sensors 24", "soup --objects 20 --sensors 40 --triangles 12"}) {
-    CAPTURE(name);
-    REQUIRE(runProgram(folder, "workload " + name + " --out w").status == 0);
-    const Run contact = runProgram(folder, "query w/queries.json --mode contact");
-    const Run reference = runProgram(folder, "query w/queries.json --mode reference");
-    INFO(contact.err);
-    REQUIRE(contact.status == 0);
-    const auto found = linesOf(contact.out), expected = linesOf(reference.out);
-    REQUIRE(found.size() == expected.size());
-    size_t hits = 0;
-    for (size_t i = 0; i < found.size(); ++i) {
-      CAPTURE(found[i].dump(), expected[i].dump());
-      for (const char* key : {"id", "status", "object", "tri_a", "tri_b"}) CHECK(found[i][key] == expected[i][key]);
-      CHECK((found[i]["tier"] == "contact" || found[i]["tier"] == "select"));
-      hits += found[i]["status"] == "hit";
-    }
-    CHECK(hits > 0);
-  }
-}
-
 TEST_CASE("help shows examples, and a call without a command points to the help") {
   const ScratchFolder folder;
   CHECK_THAT(runProgram(folder, "--help").out, Contains("cyber-radar demo"));

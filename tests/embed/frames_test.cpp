@@ -58,34 +58,12 @@ struct FamilyFrames {
   Recorder recorders[kInFlight];
 };
 
-/// All objects move in each.
-struct MovingFrames {
-  MovingFrames(const Device& engine, const Device& hosts) : renderer(hosts), recorder(engine, row.scene) {}
-  void operator()(uint32_t frame) {
-    for (ObjectId id = 0; id < 8; ++id) {
-      row.scene.setTransform(id, at(1.1 * id, 0.2, 4.0 + id + 0.001 * frame));
-    }
-    renderer.record(recorder, row.queries);
-    renderer.submitAndWait();
-    const Renderer::ShaderResult& result = renderer.shaderResult(4);
-    const bool isHit = result.status == static_cast<uint32_t>(Status::hit);
-    CHECK((isHit || (result.flags == Flag::unresolved && !test::wantsDoubles())));
-  }
-  Row row{30};
-  Renderer renderer;
-  Recorder recorder;
-};
-
 }  // namespace
 
 TEST_CASE("recording 200 frames of all families allocates nothing, submits nothing and waits for nothing") {
   // After that many frames both recorders have seen every family.
   const auto warm = static_cast<uint32_t>(FamilyFrames::kInFlight * test::recordableFamilies().size());
   test::checkQuiet<FamilyFrames>(FamilyFrames::kFrames + FamilyFrames::kInFlight, warm);
-}
-
-TEST_CASE("recording frames in which objects move allocates nothing, and queries find the objects where they are") {
-  test::checkQuiet<MovingFrames>(100, 2);
 }
 
 TEST_CASE("three recorders in flight and a sweeper share one copy of a scene that moves, deforms, grows and shrinks") {

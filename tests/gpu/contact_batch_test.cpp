@@ -84,18 +84,6 @@ TEST_CASE("a query leaves out exactly the objects that it excludes, however many
   }
 }
 
-TEST_CASE("in mode contact queries over soups have the same bits alone, in a batch, in reverse order and on the CPU",
-          "[subgroups]") {
-  test::Case asked = test::caseOf(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
-  Sweeper sweeper(test::device(), asked.scene, {.cpuBatch = kOnDevice});
-  const std::vector<Result> single = oneByOne(sweeper, asked.queries, Mode::contact);
-  CHECK(differenceOf(sweeper.run(asked.queries).results, single) == "");
-  std::ranges::reverse(asked.queries);
-  std::vector<Result> backward = Sweeper(test::device(), asked.scene, {.cpuBatch = kOnCpu}).run(asked.queries).results;
-  std::ranges::reverse(backward);
-  CHECK(differenceOf(backward, single) == "");
-}
-
 TEST_CASE("batches of both modes by turns have the same bits as those of one mode") {
   const test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 130}), 32);
   const auto fresh = [&](Mode mode) {

@@ -386,3 +386,14 @@ TEST_CASE("no texel buffer has a size that lavapipe treats apart: a power of two
     }
   }
 }
+
+TEST_CASE("reserve refuses more texels than the device allows, names both numbers and leaves the array as it was") {
+  gpu::Array<std::array<uint32_t, 8>> nodes(test::device().impl(), "nodes", gpu::BufferDomain::device, gpu::kAsTexels);
+  nodes.reserve(1);
+  const VkBufferView view = nodes.view();
+  const uint64_t most = std::min<uint64_t>(test::device().impl().properties.limits.maxTexelBufferElements, INT32_MAX);
+  CHECK_THROWS_WITH(nodes.reserve(most / 2 + 1), "nodes: " + std::to_string(2 * (most / 2 + 1)) +
+                                                     " texels, but the device's maxTexelBufferElements is " +
+                                                     std::to_string(most));
+  CHECK(nodes.view() == view);
+}

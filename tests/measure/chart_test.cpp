@@ -44,39 +44,6 @@ Result truthAt(double t) {
   return result;
 }
 
-// With the cases of the hard family and of the flight; the folder receives the report.
-std::vector<Cell> run(const test::ScratchFolder& folder) {
-  const auto make = [](auto workload) { return [=] { return workload; }; };
-  const ChartSettings settings{
-      Extent::least,
-      {{.section = "front",
-        .workload = "locked",
-        .about = "Interlocking shapes",
-        .make = make(hardScene(hardFamily("interlocking"), 1, 0, 12, Company::isolated))},
-       {.section = "front",
-        .workload = "flight",
-        .about = "Teapots in flight",
-        .make = make(makeWorkload(Figure7{.teapots = 4, .boxes = 2000, .steps = 2}))}},
-      [](const std::string& section) { return ours(test::device(), section, Extent::least, 2); }};
-  size_t steps = 0;
-  Json report = newReport("");
-  measureCases(settings, report, folder.path(), [&] { ++steps; });
-  std::vector<Cell> cells = cellsOf(report);
-  CHECK(steps == cells.size());
-  CHECK(nlohmann::json::parse(folder.read("report.json"))["parts"][1]["rows"].size() == steps);
-  return cells;
-}
-
-// Every column but those of time.
-std::string accuracyIn(std::vector<Cell> cells) {
-  Json rows = Json::array();
-  for (Cell& cell : cells) {
-    static_cast<Times&>(cell) = {};
-    rows.push_back(rowOf(cell));
-  }
-  return csvOf(rows);
-}
-
 // The sums of made-up cells, whose workloads are those of `fronts`.
 Json summed(const std::vector<Cell>& cells, const std::vector<std::string>& fronts, const test::ScratchFolder& folder) {
   Json report = newReport("", {{"device", "some device"}}), rows = Json::array(), cases = Json::array();
@@ -129,19 +96,6 @@ TEST_CASE("answers are judged against the truth: errors, misses, inventions and 
   CHECK(cell.errorWorst == 0.5);
   CHECK(cell.widthWorst == 0.5);
   CHECK(cell.wrongShare() == 0.5);
-}
-
-TEST_CASE("the accuracy columns of two runs are the same to the last digit, and every certificate holds") {
-  const test::ScratchFolder folder, other;
-  const std::vector<Cell> first = run(folder);
-  CHECK(accuracyIn(first) == accuracyIn(run(other)));
-  for (const Cell& cell : first) {
-    CAPTURE(cell.workload, cell.method);
-    CHECK(cell.violations == 0);
-    CHECK(cell.us > 0);
-    CHECK(cell.contacts > 0);
-    if (cell.certified) CHECK(cell.wrongShare() == 0);
-  }
 }
 
 TEST_CASE("the tables sum up every method over all workloads, and tell where it fails") {

@@ -128,36 +128,6 @@ TEST_CASE("boxes pressed together block though they have sunk in by more than th
   }
 }
 
-TEST_CASE("the bracket of a contact that is listed is that of its object alone") {
-  Scene scene;
-  const MeshId box = add(scene, tools::makeBox({1, 2, 2})), ball = add(scene, {"", {0, 0, 0}, {0, 0, 0}});
-  Random random(4);
-  for (int i = 0; i < 4; ++i) scene.addObject({box, at(0.5 * i, 0, 4.0 * i)});
-  std::vector<Query> queries(400);
-  // The pairs around a corner or an edge come within the clearance at the same time, to rounding.
-  for (Query& query : queries) {
-    query = {.mesh = ball, .worldFromMesh = at(0.5 * random.integer(-4, 4), 0.5 * random.integer(-4, 4), -4)};
-    query.direction = {0.25 * random.integer(-1, 1), 0, 1};
-    query.distance = 30;
-    query.clearance = 0.25 * random.integer(1, 8);
-    query.hits = kAllHits;
-  }
-  CpuSweeper sweeper(scene, 1);
-  const Answers answers = sweeper.run(queries);
-  for (size_t i = 0; i < queries.size(); ++i) {
-    for (const Result& hit : answers.lists[i].hits) {
-      Query alone = queries[i];
-      alone.hits = 1;
-      for (ObjectId id = 0; id < 4; ++id) {
-        if (id != hit.object) alone.exclude.push_back(id);
-      }
-      const Result own = sweeper.run({&alone, 1}).results[0];
-      CAPTURE(i, hit.object);
-      CHECK((hit.lo == own.lo && hit.hi == own.hi && hit.triA == own.triA && hit.triB == own.triB));
-    }
-  }
-}
-
 TEST_CASE("a box stops at its clearance before a wall, an edge and a corner") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({1, 1, 1}));

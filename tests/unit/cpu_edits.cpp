@@ -30,52 +30,6 @@ MeshId addSoup(Random& random, Scene& scene) {
 
 }  // namespace
 
-TEST_CASE(
-    "the CPU's answers follow objects that are moved, added and removed, and meshes that are deformed and replaced") {
-  Random random(11);
-  Scene scene;
-  std::vector<MeshId> meshes(4);
-  for (MeshId& mesh : meshes) mesh = addSoup(random, scene);
-  agreement::ThreadedSweepers sides(scene);
-  for (int round = 0; round < 120; ++round) {
-    INFO("round " << round);
-    for (int edits = random.integer(0, 6); edits-- > 0;) {
-      const auto id = random.below(scene.objectLimit() + 1);
-      const int what = random.integer(0, 10);
-      if (!scene.hasObject(id)) {
-        scene.addObject({meshes[random.below(static_cast<uint32_t>(meshes.size()))], somewhere(random),
-                         random.chance(0.1) ? 2u : ~0u});
-      } else if (what < 4) {
-        scene.setTransform(id, somewhere(random));
-      } else if (what < 6) {
-        std::vector<ObjectId> moved{id};
-        for (ObjectId other = 0; other < scene.objectLimit(); ++other) {
-          if (scene.hasObject(other) && random.chance(0.5)) moved.push_back(other);
-        }
-        std::vector<Transform> poses;
-        for (size_t i = 0; i < moved.size(); ++i) poses.push_back(somewhere(random));
-        scene.setTransforms(moved, poses);
-      } else if (what < 8) {
-        scene.removeObject(id);
-      } else if (what == 10) {
-        const MeshView mesh = scene.mesh(scene.object(id).mesh);
-        std::vector<float> positions(mesh.positions.begin(), mesh.positions.end());
-        for (float& c : positions) c += static_cast<float>(random.uniform(-0.3, 0.3));
-        scene.setPositions(scene.object(id).mesh, positions);
-      } else {
-        // Replaces a mesh by another, which gets its id.
-        const MeshId mesh = scene.object(id).mesh;
-        for (ObjectId other = 0; other < scene.objectLimit(); ++other) {
-          if (scene.hasObject(other) && scene.object(other).mesh == mesh) scene.removeObject(other);
-        }
-        scene.removeMesh(mesh);
-        REQUIRE(addSoup(random, scene) == mesh);
-      }
-    }
-    sides.check(queriesThrough(random, meshes));
-  }
-}
-
 TEST_CASE("the CPU's answers follow a scene to which another is move-assigned") {
   Random random(12);
   Scene scene;
@@ -93,21 +47,6 @@ TEST_CASE("the CPU's answers follow a scene to which another is move-assigned") 
     scene = std::move(other);
     const std::vector<Query> queries = queriesThrough(random, meshes);
     REQUIRE(test::differenceOf(sweeper.run(queries), CpuSweeper(scene).run(queries)) == "");
-  }
-}
-
-TEST_CASE("the CPU's answers follow an object that leaves the range of the tree over objects and returns") {
-  Random random(13);
-  Scene scene;
-  const std::vector<MeshId> meshes{addSoup(random, scene), addSoup(random, scene)};
-  for (int i = 0; i < 6; ++i) scene.addObject({meshes[0], somewhere(random)});
-  agreement::ThreadedSweepers sides(scene);
-  for (const double far : {0.0, 1e30, 1e200, 0.0}) {
-    INFO("far " << far);
-    Transform pose = somewhere(random);
-    pose.m[3] += far;
-    scene.setTransform(2, pose);
-    sides.check(queriesThrough(random, meshes));
   }
 }
 

@@ -1,4 +1,4 @@
-// Mode sampled: neither batches nor what is drawn change answers, and bad queries are refused.
+// Mode sampled: neither batches nor what is drawn change answers.
 #include <algorithm>
 #include <cmath>
 #include <mutex>

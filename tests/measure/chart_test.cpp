@@ -5,9 +5,6 @@
 #include "support/answer.h"
 #include "support/catch.h"
 #include "support/scratch_folder.h"
-#include "support/test_device.h"
-#include "workloads/generate.h"
-#include "workloads/hard_cases.h"
 
 using namespace radar;
 using namespace radar::tools;

@@ -1,9 +1,7 @@
 // The CPU's answers have the same bits on any number of threads.
 #include "cpu_agreement.h"
 #include "scene_kinds.h"
-#include "support/answer.h"
 #include "workloads/generate.h"
-#include "workloads/hard_cases.h"
 #include "workloads/interlocking.h"
 
 using namespace radar;

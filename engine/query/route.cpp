@@ -37,14 +37,19 @@ void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode,
     return wrong;
   };
   std::atomic<size_t> first = queries.size();  // of those that are wrong
-  parallelFor(queries.size(), kWorthThread, threads, [&](unsigned, size_t from, size_t to) {
+  const auto check = [&](size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
       if (problemOf(queries[i]).empty()) continue;
       for (size_t least = first; i < least && !first.compare_exchange_weak(least, i);) {
       }
       return;
     }
-  });
+  };
+  if (threads == 1) {
+    check(0, queries.size());
+  } else {
+    parallelFor(queries.size(), kWorthThread, threads, [&](unsigned, size_t from, size_t to) { check(from, to); });
+  }
   if (first == queries.size()) return;
   throw Error("query " + std::to_string(first) + ": " + problemOf(queries[first]));
 }

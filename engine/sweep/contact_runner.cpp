@@ -155,20 +155,21 @@ void ContactRunner::submit(Flight& flight) {
   last_.swap(submitted_);
   submitted_.clear();
   const std::optional<SearchAnswers> found = wait(flight, last_);
+  submitted_.reserve(planned_.groups().size());  // once the device works, nothing may fail before it is known
+  const Clock::time_point begun = Clock::now();
   bool isTooLarge = false;
   const bool isSubmitted = attempt(flight, planned_.groups(), [&] {
     if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, tuning_);
     try {
-      const Clock::time_point begun = Clock::now();
       const Scene::Impl& scene = scene_.impl();
       submitter_->submit(planned_.source(flight.queries, scene, scene.objectTree(), options_.cpuThreads), scene);
-      flight.addCpuTime("submit", msSince(begun));
     } catch (const Error& error) {
       isTooLarge = gpu::isOutOfMemory(error);
       throw;
     }
   });
   if (isSubmitted) submitted_.assign(planned_.groups().begin(), planned_.groups().end());
+  flight.addCpuTime("submit", msSince(begun));
   planned_.clear();
   if (found) decode(flight, *found, last_);
   if (isTooLarge) submitter_.reset();  // its lists may have grown too large

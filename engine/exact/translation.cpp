@@ -36,10 +36,4 @@ Translation::Translation(const Vector& sensor, const Vector& object)
   rate = (1 + 8 * kUnit) * speed;
 }
 
-Vector displacementOf(const Query& query) {
-  if (query.motion) return *query.motion;
-  const Translation sweep(query);
-  return scaled(sweep.end, sweep.unit);
-}
-
 }  // namespace radar

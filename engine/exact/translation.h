@@ -40,7 +40,4 @@ struct Translation : Piece {
   Translation(const Vector& sensor, const Vector& object);
 };
 
-/// The sensor's displacement during a step: the query's motion, or D along its direction.
-Vector displacementOf(const Query& query);
-
 }  // namespace radar

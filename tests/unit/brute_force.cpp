@@ -4,6 +4,7 @@
 
 #include "blocking_oracle.h"
 #include "exact/translation.h"
+#include "radar/displacement.h"
 
 namespace oracle {
 

@@ -1,6 +1,7 @@
 // Steps, in which objects move, too: their frames, limits and contracts.
 #include "brute_force.h"
 #include "radar/cpu_sweeper.h"
+#include "radar/displacement.h"
 #include "scene_kinds.h"
 #include "support/answer.h"
 #include "support/catch.h"
@@ -9,6 +10,7 @@ using namespace radar;
 using test::add;
 using test::at;
 using tools::operator+;
+using tools::operator-;
 using Motion3 = tools::Vec3;
 
 TEST_CASE("a step seen from a moving frame has the same fractions, features and objects") {
@@ -107,4 +109,64 @@ TEST_CASE("queries and objects that break the contract of a step are refused by 
   CHECK_THROWS_WITH(scene.setMotion(object, {INFINITY, 0, 0}), test::StartsWith("setMotion: expected 3 finite"));
   CHECK_THROWS_WITH(scene.setMotion(7, {}), test::Contains("object 7 does not exist"));
   CHECK_THROWS_WITH(scene.addObject({.mesh = box, .motion = {0, 1e305, 0}}), test::StartsWith("addObject: motion"));
+}
+
+TEST_CASE("a displacement becomes a step, or a sweep that goes at least so far") {
+  kinds::Random random(5);
+  const auto lengthOf = [](const Motion3& way) {
+    long double sum = 0;
+    for (const long double x : way) sum += x * x;
+    return std::sqrt(sum);
+  };
+  for (int i = 0; i < 300; ++i) {
+    Motion3 way;
+    for (double& x : way) x = random.chance(0.25) ? 0 : std::ldexp(random.uniform(-1, 1), random.integer(-30, 30));
+    const bool isAlongAxis = (way[0] == 0) + (way[1] == 0) + (way[2] == 0) == 2, rests = way == Motion3{};
+    Query step, near{.clearance = 1}, nearMoving{.clearance = 1}, sampled;
+    setDisplacement(step, way, Mode::contact, false);
+    setDisplacement(near, way, Mode::contact, false);
+    setDisplacement(nearMoving, way, Mode::contact, true);
+    setDisplacement(sampled, way, Mode::sampled, false);
+    for (const Query* query : {&step, &nearMoving}) {
+      CHECK(query->motion.has_value() != isAlongAxis);
+      CHECK(displacementOf(*query) == way);
+    }
+    CHECK(near.motion.has_value() == rests);
+    CHECK_FALSE(sampled.motion);
+    for (const Query* query : {&near, &sampled}) {
+      if (query->motion) continue;
+      const long double length = lengthOf(way);
+      CHECK((query->distance >= length && query->distance <= length * (1 + 0x1p-49L)));
+      CHECK(lengthOf(displacementOf(*query) - way) <= 0x1p-48L * length);
+    }
+  }
+  Query wrong;
+  setDisplacement(wrong, {0, 0, std::nan("")}, Mode::sampled, false);
+  Scene scene;
+  wrong.mesh = scene.addMesh(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, std::vector<uint32_t>{0, 1, 2});
+  CHECK_THAT(validate(wrong, scene, Mode::sampled), test::Contains("3 finite numbers"));
+}
+
+TEST_CASE("times of a step become distances, whose bracket holds") {
+  kinds::Random random(6);
+  for (int i = 0; i < 300; ++i) {
+    Query query;
+    Result result;
+    query.motion = {random.uniform(-1, 1), random.uniform(-1, 1),
+                    std::ldexp(random.uniform(-1, 1), random.integer(0, 8))};
+    const auto [x, y, z] = std::array<long double, 3>{(*query.motion)[0], (*query.motion)[1], (*query.motion)[2]};
+    const long double length = std::sqrt(x * x + y * y + z * z);
+    result.lo = i % 3 == 0 ? 0 : random.uniform(0, 0.5);
+    result.t = i % 2 == 0 ? result.lo : random.uniform(0.5, 0.75);
+    result.hi = i % 5 == 0 ? INFINITY : random.uniform(0.75, 1);
+    Result distances = result;
+    toDistances(query, distances);
+    CHECK((distances.lo <= result.lo * length && distances.lo >= result.lo * length * (1 - 0x1p-49L)));
+    CHECK((distances.hi >= result.hi * length && distances.hi <= result.hi * length * (1 + 0x1p-49L)));
+    CHECK((distances.lo <= distances.t && distances.t <= distances.hi));
+    CHECK((result.t != result.lo || distances.t == distances.lo));
+    query.motion.reset();
+    toDistances(query, result);
+    CHECK((result.t <= 1 && result.lo <= 0.5));
+  }
 }

@@ -22,10 +22,10 @@ enum Option : uint32_t {
 };
 /// In that order, as query files name them.
 inline constexpr std::array kOptionNames{"exclude",   "mask",      "skip_overlapping", "ignore_leaving", "slack",
-                                         "clearance", "tolerance", "motion",           "hits",           "decide"};
+                                         "clearance", "tolerance", "motion",           "hits",           "any_hit"};
 
 /// Replaces the scene by a random one, and returns queries through it, all with those options: valid, except that
-/// `hits` and `decide` together are refused.
+/// `hits` and `any_hit` together are refused.
 std::vector<Query> drawn(soups::Random& random, uint32_t options, Scene& scene);
 
 }  // namespace radar::test

@@ -61,7 +61,15 @@ TEST_CASE("scopes shows R, M and L in a page and writes their values on request"
   CHECK(sidecar["height"] == 32);
   CHECK(sidecar["d"] == Approx(9));
   CHECK(sidecar["answer"]["t"] == Approx(3));
-  for (const char* name : {"p/R.f32", "p/M.f32", "p/L.f32"}) CHECK(folder.read(name).size() == 4u * 32 * 32);
+  // Of a query with options that mode sampled refuses, the pictures are of what it does not.
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj"], "scenes": [{"instances": [[0]]}],
+    "queries": [{"id": "q", "scene": 0, "sensor": [0, 1,0,0,0.5, 0,1,0,0, 0,0,1,-3], "motion": [0, 0, 9], "hits": "all",
+                 "clearance": 0.5, "ignore_leaving": true, "skip_overlapping": true}]})");
+  CHECK(runProgram(folder, "scopes q.json --query q --resolution 32 --out q --raw").err.empty());
+  for (const std::string name : {"R.f32", "M.f32", "L.f32"}) {
+    CHECK(folder.read("p/" + name).size() == 4u * 32 * 32);
+    CHECK((folder.read("q/" + name) == folder.read("p/" + name)));
+  }
 }
 
 TEST_CASE("demo writes a table, queries, answers and a page that opens on a contact") {

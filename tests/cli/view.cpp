@@ -31,7 +31,7 @@ TEST_CASE("a page is the same whether its answers are found, or read as lines or
   folder.write("a.obj", kTriangle);
   folder.write("steps.json",
                queryFile(query("up", R"("motion": [0, 0, 10])") + "," + query("down", R"("motion": [0, 0, -1])") + "," +
-                         query("any", R"("motion": [0, 0, 9], "decide": true)") + "," +
+                         query("any", R"("motion": [0, 0, 9], "any_hit": true)") + "," +
                          query("near", R"("dir": [0, 0, 1], "D": 8, "clearance": 0.5)")));
   // Records cannot list contacts, or what overlaps.
   std::string several = queryFile(query("all", R"("dir": [0, 0, 1], "D": 8, "hits": "all", "ignore_leaving": true)") +

@@ -66,7 +66,7 @@ std::vector<std::string> seeds() {
   return {
       rowsOf(way, directions, distances),
       rowsOf("('motion', '<f4', (3,)), ('scene', '<i2')", Floats{{0, 0, 4}, {0, 0, 0}}, std::array<int16_t, 2>{0, 1}),
-      rowsOf(way + ", ('exclude', '<i8'), ('mask', '<u4'), ('', '|V1'), ('decide', '|b1')", directions, distances,
+      rowsOf(way + ", ('exclude', '<i8'), ('mask', '<u4'), ('', '|V1'), ('any_hit', '|b1')", directions, distances,
              std::array<int64_t, 2>{0, -1}, std::array{1u, ~0u}, "ab", std::array{false, true}),
       rowsOf(
           way + ", ('hits', '<u4'), ('mode', '|u1'), ('slack', '<f8'), ('ignore_leaving', '|b1'), ('clearance', '<f4')",

@@ -100,7 +100,7 @@ std::vector<std::string> seeds() {
  {"id": "b", "base": 0, "instances": [[0, 2,0,0,0, 0,-2,0,0, 0,0,2,1e-3]], "masks": [[1, 6]]}],
  "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0, 0, 1], "D": 8},
  {"id": "q", "scene": 1, "batch": 3, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "exclude": [2], "dir": [0, -0.5, 1],
-  "D": 0, "mask": 5, "decide": true, "mode": "sampled", "speed": 2.5, "tolerance": 0.25}]})",
+  "D": 0, "mask": 5, "any_hit": true, "mode": "sampled", "speed": 2.5, "tolerance": 0.25}]})",
       head +
           R"([{"file": "a.obj", "scale": 0.001}, "b.off", "parts.obj#1", "parts.obj#x z"], "scenes": [], "queries": []})",
       head +
@@ -118,7 +118,7 @@ std::vector<std::string> seeds() {
 
 constexpr const char* kWords =
     R"("format"~"meshes"~"scenes"~"queries"~"id"~"base"~"instances"~"instances_file"~"assembly"~"masks"~)"
-    R"("motions"~"deforms"~"scene"~"batch"~"sensor"~"exclude"~"dir"~"D"~"motion"~"mask"~"decide"~"mode"~"speed"~)"
+    R"("motions"~"deforms"~"scene"~"batch"~"sensor"~"exclude"~"dir"~"D"~"motion"~"mask"~"any_hit"~"mode"~"speed"~)"
     R"("file"~"scale"~"tolerance"~"ignore_leaving"~"slack"~"skip_overlapping"~"hits"~"clearance"~"rotation"~"all"~"sampled"~)"
     R"("contact"~"reference"~"a.obj"~"b.off"~"parts.obj"~"parts.obj#0"~"parts.obj#x"~"instances.stl"~)"
     R"("broken.stl"~"positions.ply"~null~true~false~[~]~{~}~, ~: ~0~-1~1~2~0.5~1e999~1e308~-1e-320~4294967295~)"

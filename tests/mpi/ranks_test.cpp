@@ -103,7 +103,7 @@ TEST_CASE("all ranks see what changes between batches") {
                             {"D", 12}};
     if (i % 5 == 0) query["mask"] = 1;
     if (i % 7 == 0) query["hits"] = "all";
-    if (i % 11 == 0) query["decide"] = true, query.erase("hits");
+    if (i % 11 == 0) query["any_hit"] = true, query.erase("hits");
     if (i % 3 == 0) query["mode"] = "reference";
     file["queries"].push_back(query);
   }

@@ -53,7 +53,7 @@ def some_arrays(count: int) -> dict[str, np.ndarray]:
         "scene": rng.integers(0, 2, count, dtype=np.uint8),
         "batch": rng.integers(0, 3, count, dtype=np.int16),
         "mask": rng.integers(1, 2**32, count, dtype=np.uint32),
-        "decide": rng.integers(0, 4, count) == 0,
+        "any_hit": rng.integers(0, 4, count) == 0,
         "speed": np.where(rng.integers(0, 2, count) == 0, np.nan, 2.5),
         "ignore_leaving": rng.integers(0, 2, count) == 0,
         "slack": np.where(rng.integers(0, 2, count) == 0, np.nan, 1e-12),
@@ -121,7 +121,7 @@ def test_steps_are_arrays_of_motions(tmp_path):
 def test_records_say_what_lines_say(tmp_path, mode):
     arrays = some_arrays(300)
     if mode == "sampled":
-        arrays = {name: arrays[name] for name in ("mesh", "pose", "dir", "D", "speed", "decide")}
+        arrays = {name: arrays[name] for name in ("mesh", "pose", "dir", "D", "speed", "any_hit")}
     save(tmp_path / "q.npy", arrays)
     write_world(tmp_path, queries_file="q.npy")
     lines = [json.loads(line) for line in answer(tmp_path, "--mode", mode).splitlines()]
@@ -206,7 +206,7 @@ def with_value(name: str, index, value) -> np.ndarray:
         ("mesh", np.zeros(20), "q.npy: mesh: expected integers, got float64"),
         ("pose", np.zeros((20, 4, 4)), "q.npy: pose: expected float32 or float64 of shape (3, 4), got float64 of shape (4, 4)"),
         ("D", np.zeros((20, 1)), "q.npy: D: expected float32 or float64, got float64 of shape (1,)"),
-        ("decide", np.zeros(20, np.uint8), "q.npy: decide: expected booleans, got uint8"),
+        ("any_hit", np.zeros(20, np.uint8), "q.npy: any_hit: expected booleans, got uint8"),
         ("D", np.zeros(20, ">f8"), "q.npy: D: expected little-endian numbers"),
         ("D", np.zeros(20, np.float16), "q.npy: D: expected float32, float64, integers or booleans, got the type f2"),
         ("D", np.zeros(20, "U3"), "q.npy: D: expected float32, float64, integers or booleans, got the type U3"),

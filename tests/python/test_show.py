@@ -58,7 +58,7 @@ def test_a_page_knows_what_was_asked_and_left_out(tmp_path):
     assert shown["queries"]["asked"] == {"0": asked, "1": asked}
     assert page_data(casts[1:].show(tmp_path / "part.html"))["left"] == {"0": [0]}
     whether = page_data(scene.cast(cube, starts, [20.0, 0, 0], any_hit=True).show(tmp_path / "any.html"))
-    assert whether["queries"]["asked"] == {"0": {"decide": True}, "1": {"decide": True}} and whether["left"] == {}
+    assert whether["queries"]["asked"] == {"0": {"any_hit": True}, "1": {"any_hit": True}} and whether["left"] == {}
 
 
 def test_a_page_has_every_option_and_what_is_listed(tmp_path):

@@ -24,7 +24,7 @@ nlohmann::json goodFile() {
                {"id": "b", "base": 0, "instances": [[0, 2,0,0,0, 0,-2,0,0, 0,0,2,1e-3]], "masks": [[1, 6]]}],
     "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0, 0, 1], "D": 8},
                 {"id": "q", "scene": 1, "batch": 3, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "exclude": [2],
-                 "dir": [0, -0.5, 1], "D": 0, "mask": 5, "decide": true, "mode": "sampled", "speed": 2.5,
+                 "dir": [0, -0.5, 1], "D": 0, "mask": 5, "any_hit": true, "mode": "sampled", "speed": 2.5,
                  "tolerance": 0.25}]})");
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/queries/1/mask", "1.5", "queries[1].mask: ", "a whole number"},
       {"/queries/1/mode", "\"fast\"", "queries[1].mode: ", "got \"fast\""},
       {"/queries/1/mode", "\"bounded\"", "queries[1].mode: ", "sampled, contact or reference, got \"bounded\""},
-      {"/queries/1/decide", "1", "queries[1].decide: ", "true or false"},
+      {"/queries/1/any_hit", "1", "queries[1].any_hit: ", "true or false"},
       {"/queries/1/tolerance", "-1", "queries[1].tolerance: ", "a finite number of 0 or more"},
       {"/queries/1/tolerance", "null", "queries[1].tolerance: ", "a finite number"},
       {"/queries/1/speed", "0", "queries[1].speed: ", "above 0"},
@@ -140,7 +140,7 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/queries/0/hits", "0", "queries[0].hits: ", "from 1 to 4294967294, or \"all\", got 0"},
       {"/queries/0/hits", "1e300", "queries[0].hits: ", "or \"all\""},
       {"/queries/0/hits", "\"some\"", "queries[0].hits: ", "or \"all\""},
-      {"/queries/1/hits", "2", "queries[1].hits: ", "1 beside \"decide\""},
+      {"/queries/1/hits", "2", "queries[1].hits: ", "1 beside \"any_hit\""},
       {"/queries/1/ignore_leaving", "true", "queries[1].mode: ", "contact or reference, as \"ignore_leaving\" needs"},
       {"/queries/0/clearance", "-1", "queries[0].clearance: ", "a finite number of 0 or more"},
       {"/queries/1/clearance", "1", "queries[1].mode: ", "contact or reference"},

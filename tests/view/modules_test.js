@@ -59,7 +59,7 @@ test("an answer says how far its sensor goes, and when it touches something", ()
   const data = dataOf([
     HIT, CLEAR, { ...CLEAR, left: [1] }, { status: "overlap", t: 0, lo: 0, hi: 0, object: 1 },
     { status: "undecided", t: 4, lo: 4, hi: Infinity }, { status: "invalid" },
-    { status: "hit", t: 10, lo: 0, hi: 10, asked: { decide: true } }, { ...HIT, t: 0.5, lo: 0.5, hi: 0.5, step: true },
+    { status: "hit", t: 10, lo: 0, hi: 10, asked: { any_hit: true } }, { ...HIT, t: 0.5, lo: 0.5, hi: 0.5, step: true },
   ]);
   assert.deepEqual(data.answers.map(({ kind }) => kind),
     ["hit", "clear", "part", "overlap", "undecided", "invalid", "hit", "hit"]);
@@ -175,10 +175,10 @@ test("words say what was asked: to touch, to come near, or to block", () => {
   const answers = [
     HIT, CLEAR, { status: "overlap", t: 0, lo: 0, hi: 0, object: 1, gap: 0.25 },
     { status: "undecided", t: Infinity, lo: 4, hi: Infinity },
-    { status: "hit", t: 10, lo: 0, hi: 10, decide: true },
+    { status: "hit", t: 10, lo: 0, hi: 10, any_hit: true },
   ];
-  const said = (asked) => dataOf(answers.map(({ decide, ...answer }) =>
-    ({ ...answer, asked: decide ? { ...asked, decide } : asked }))).answers.map((answer) => inWords(answer));
+  const said = (asked) => dataOf(answers.map(({ any_hit, ...answer }) =>
+    ({ ...answer, asked: any_hit ? { ...asked, any_hit } : asked }))).answers.map((answer) => inWords(answer));
   const first = (lines) => lines.map(([line]) => line.split(". Asked")[0]);
   assert.deepEqual(first(said({})), [
     "Free for 3, then it touches object 0 (cube).", "Touches nothing within 10.", "Touches object 1 (lid) where it starts.",

@@ -392,12 +392,12 @@ def legend(view):
 
 def test_an_answer_to_whether_there_is_a_contact_says_no_more(browser, tmp_path):
     queries = [
-        {"id": "whether", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10, "decide": True},
-        {"id": "near", "sensor": at(0, -5, 2.5, 0), "dir": [1, 0, 0], "D": 10, "decide": True, "clearance": 0.75},
+        {"id": "whether", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10, "any_hit": True},
+        {"id": "near", "sensor": at(0, -5, 2.5, 0), "dir": [1, 0, 0], "D": 10, "any_hit": True, "clearance": 0.75},
     ]
     view = View(browser, make_page(tmp_path, queries))
     assert view.run("return [view.camera.distance, ...view.camera.target].every(Number.isFinite)")
-    assert [row[2:] for row in view.rows()] == [["≤ 10", "", "", "decide"], ["≤ 10", "", "", "decide, clearance 0.75"]]
+    assert [row[2:] for row in view.rows()] == [["≤ 10", "", "", "any_hit"], ["≤ 10", "", "", "any_hit, clearance 0.75"]]
     view.choose(0)
     view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
     assert is_like(view.colour_at((-5 + 0.5, -1, 0.6)), "hit")  # where it starts: where it stops was not asked

@@ -157,7 +157,7 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   for (size_t i = 0; i < fields_.size(); ++i) {
     if (!fields_[i]) continue;
     readField(queryFields()[i], *fields_[i], index, query);
-    if (query.hits > 1 && query.anyHit) refuse(*fields_[i], index, "expected 1 beside \"decide\"");
+    if (query.hits > 1 && query.anyHit) refuse(*fields_[i], index, "expected 1 beside \"any_hit\"");
   }
   if (mode_) {
     query.mode = static_cast<AnswerMode>(whole(*mode_, index, 2, "0 for sampled, 1 for contact or 2 for reference"));

@@ -7,11 +7,12 @@
 #include "batch/binary_queries.h"
 #include "batch/query_json.h"
 #include "batch/query_reader.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
 void ModesAsked::add(const Workload& world, const QuerySpec& query) {
-  if (!listed && (query.hits > 1 || query.skipOverlapping)) listed = query.id;
+  if (!listed && hasLists(query)) listed = query.id;
   ++modes[query.mode];
   if (query.mode || !exactOnly.empty()) return;
   const std::string reason = tools::exactOnly(world, query);

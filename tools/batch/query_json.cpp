@@ -42,7 +42,7 @@ void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
           [&](const JsonValue& id) { to.exclude.push_back(id.index(objects, "objects of the query's scene")); });
     });
   }
-  if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
+  if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"any_hit\"");
 }
 
 }  // namespace

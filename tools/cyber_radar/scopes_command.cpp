@@ -11,6 +11,7 @@
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
 #include "measure/report.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -88,7 +89,9 @@ void writeRaw(const std::filesystem::path& folder, const Workload& workload, con
 void drawScopes(Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   Workload workload = load(options);
-  workload.queries = {findQuery(workload, options)};
+  // The text below needs the whole answer, and the pictures are of mode sampled.
+  workload.queries = {sampledPartOf(findQuery(workload, options))};
+  workload.queries.front().anyHit = false;
   const QuerySpec& query = workload.queries.front();
   ScenePlayer player(workload);
   player.show(query.scene);
@@ -96,9 +99,6 @@ void drawScopes(Options& options) {
   Sweeper sweeper(device, player.scene());
   Query asked = query;
   asked.resolution = engine.resolution;
-  // The text below needs the whole answer, and the pictures are of mode sampled.
-  asked.anyHit = asked.ignoreLeaving = asked.skipOverlapping = false;
-  asked.hits = 1;
   const Scopes scopes = sweeper.scopes(asked);
   if (scopes.result.status == Status::invalid) {
     throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");

@@ -86,7 +86,7 @@ void readField(const tools::QueryField& field, const py::object& value, tools::Q
     fits = value.is_none();
   }
   if (fits && setValue(to, field, number)) return;
-  throw py::value_error(std::string(field.python) + ": expected " + expectedFor(field) + ", got " +
+  throw py::value_error(std::string(field.name) + ": expected " + expectedFor(field) + ", got " +
                         std::string(py::repr(value)));
 }
 
@@ -99,13 +99,13 @@ tools::AnswerMode modeFrom(const py::dict& options) {
 Query optionsFrom(const py::dict& options) {
   tools::QuerySpec query;
   for (const tools::QueryField& field : tools::queryFields()) {
-    if (*field.python != 0) readField(field, options[field.python], query);
+    if (field.cast) readField(field, options[field.name], query);
   }
   query.resolution = options["resolution"].cast<uint32_t>();
   if (query.hits > 1 && query.anyHit) throw py::value_error("hits: expected 1 with any_hit");
   const tools::QueryField* const exact = exactOnly(query);
   if (exact && modeFrom(options) == tools::AnswerMode::sampled) {
-    throw py::value_error("mode: expected \"contact\" or \"reference\" with " + std::string(exact->python) +
+    throw py::value_error("mode: expected \"contact\" or \"reference\" with " + std::string(exact->name) +
                           ", got \"sampled\"");
   }
   return query;
@@ -200,7 +200,7 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
   casts.directions = output<double>(arrays, "displacements", 3 * shown);
   casts.distances = output<double>(arrays, "distances", shown);
   for (const tools::QueryField& field : tools::queryFields()) {
-    if (*field.python != 0) casts.options.emplace_back(&field, output<double>(arrays, field.python, shown));
+    if (field.cast) casts.options.emplace_back(&field, output<double>(arrays, field.name, shown));
   }
   if (hits) {
     requireCount(hits->second, "offsets", shown + 1);
@@ -294,7 +294,7 @@ PYBIND11_MODULE(_engine, module) {
   module.attr("commit") = radar::tools::commit();
   py::list options;
   for (const radar::tools::QueryField& field : radar::tools::queryFields()) {
-    if (*field.python != 0) options.append(field.python);
+    if (field.cast) options.append(field.name);
   }
   module.attr("OPTIONS") = options;
   module.attr("MAX_RESOLUTION") = radar::kMaxResolution;

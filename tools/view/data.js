@@ -73,7 +73,7 @@ export class Answer {
     this.hasPoint = this.point.every(Number.isFinite);
     this.hasNormal = this.normal.every(Number.isFinite);
     /** Whether only that is known. */
-    this.saysOnlyWhether = this.status === "hit" && asked.decide === true;
+    this.saysOnlyWhether = this.status === "hit" && asked.any_hit === true;
     /** When it touches something; NaN if it is not known. */
     this.time = Number.isFinite(this.t) && !this.saysOnlyWhether && this.status !== "undecided" ? this.t : NaN;
     this.clearance = Number(asked.clearance ?? 0);

@@ -61,7 +61,7 @@ function answerInWords(/** @type {Answer} */ answer) {
     other: data.left[query] ? " else" : "",
   });
   if (!answer.saysOnlyWhether) return sentences[status === "hit" && answer.isListed ? "listed" : status] ?? "Not answered.";
-  return `${sentences.whether} Asked was only whether (decide): not what or when; at the start counts, too.`;
+  return `${sentences.whether} Asked was only whether (any_hit): not what or when; at the start counts, too.`;
 }
 
 /** A contact in a list: "0.5: object 3 (lid)". */

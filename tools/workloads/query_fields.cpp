@@ -1,7 +1,10 @@
 #include "workloads/query_fields.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
+
+#include "radar/displacement.h"
 
 namespace radar::tools {
 
@@ -12,10 +15,10 @@ constexpr double kAboveZero = std::numeric_limits<double>::denorm_min(),
                  kInfinity = std::numeric_limits<double>::infinity(), kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr QueryField kFields[] = {
-    {.name = "decide",
+    {.name = "any_hit",
      .member = &Query::anyHit,
      .about = "Asks only whether there is a contact; cheaper if there is one",
-     .python = "any_hit"},
+     .cast = true},
     {.name = "exclude", .member = &Query::exclude, .about = "Objects that take no part, such as the sensor's own"},
     {.name = "mask",
      .member = &Query::mask,
@@ -29,20 +32,21 @@ constexpr QueryField kFields[] = {
     {.name = "ignore_leaving",
      .member = &Query::ignoreLeaving,
      .about = "Counts only what blocks: the sensor may leave what it rests on, or slide along it",
-     .python = "ignore_leaving",
+     .cast = true,
      .sampled = false,
      .option = true},
     {.name = "skip_overlapping",
      .member = &Query::skipOverlapping,
      .about = "Leaves out, and lists, objects whose surfaces cross the sensor's at the start",
-     .python = "skip_overlapping",
+     .lists = true,
+     .cast = true,
      .sampled = false,
      .option = true},
     {.name = "slack",
      .member = &Query::slack,
      .about = "With these two: how far surfaces that touch may sink into each other, for rounding; else derived from "
               "the coordinates",
-     .python = "slack",
+     .cast = true,
      .option = true},
     {.name = "hits",
      .member = &Query::hits,
@@ -50,13 +54,14 @@ constexpr QueryField kFields[] = {
      .least = 1,
      .most = kAllHits - 1,
      .word = "all",
-     .python = "hits",
+     .lists = true,
+     .cast = true,
      .sampled = false,
      .option = true},
     {.name = "clearance",
      .member = &Query::clearance,
      .about = "Counts as contact when the surfaces come within this distance of each other",
-     .python = "clearance",
+     .cast = true,
      .sampled = false,
      .option = true},
     {.name = "tolerance",
@@ -64,7 +69,7 @@ constexpr QueryField kFields[] = {
      .about =
          "With a clearance: how narrow the bracket of the distance is to be; else 1e-6 of the sensor's size, or of the "
          "clearance if that is more",
-     .python = "tolerance"},
+     .cast = true},
 };
 
 std::string defaultOf(const QueryField& field) {
@@ -133,6 +138,18 @@ const QueryField* exactOnly(const QuerySpec& query) {
     if (!field.sampled && isGiven(query, field)) return &field;
   }
   return nullptr;
+}
+
+QuerySpec sampledPartOf(QuerySpec query) {
+  for (const QueryField& field : kFields) {
+    if (!field.sampled) std::visit([&](auto member) { query.*member = kUsual.*member; }, field.member);
+  }
+  if (query.motion) setDisplacement(query, *query.motion, Mode::sampled, false);
+  return query;
+}
+
+bool hasLists(const QuerySpec& query) {
+  return std::ranges::any_of(kFields, [&](const QueryField& field) { return field.lists && isGiven(query, field); });
 }
 
 std::string queryFieldTable() {

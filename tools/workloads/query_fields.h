@@ -21,7 +21,8 @@ struct QueryField {
   const char* about;
   double least = 0, most = std::numeric_limits<double>::max();  ///< of numbers
   const char* word = nullptr;  ///< stands for the number after `most`; in a column, 0 does
-  const char* python = "";     ///< the keyword of Scene.cast that takes one value for all casts, if there is one
+  bool lists = false;          ///< given, it makes the answer list something
+  bool cast = false;           ///< a keyword of Python's Scene.cast, too
   bool sampled = true;         ///< mode sampled offers it
   bool option = false;         ///< of the command sweep
 
@@ -42,6 +43,10 @@ std::string expectedFor(const QueryField& field);
 
 /// The first field given that mode sampled does not offer, or null.
 const QueryField* exactOnly(const QuerySpec& query);
+/// The query without these, and with a motion made a sweep: what mode sampled answers of it where no object moves.
+QuerySpec sampledPartOf(QuerySpec query);
+/// Whether the answer has lists.
+bool hasLists(const QuerySpec& query);
 
 /// The rows as a table in Markdown.
 std::string queryFieldTable();

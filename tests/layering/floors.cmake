@@ -31,7 +31,7 @@ set(measure_may radar gpu scene contact commit child workloads import batch base
 set(command_may radar commit import)
 set(cyber_radar_may radar commit workloads view import answer batch measure command)
 set(lab_may radar workloads import batch baselines measure command cyber_radar)
-set(mpi_may commit batch measure command cyber_radar)
+set(mpi_may commit answer batch measure command cyber_radar)
 set(python_may radar commit workloads view import answer)
 
 set(wrong "")

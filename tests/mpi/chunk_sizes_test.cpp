@@ -9,6 +9,8 @@ TEST_CASE("chunks take about a tenth of a second and shrink towards the end") {
   sizes.answered(0, 64, 0.064);
   CHECK(sizes.next(0, 1'000'000) == 100);
   sizes.answered(0, 100, 1e-9);
+  CHECK(sizes.next(0, 1'000'000) == 800);
+  sizes.answered(0, 60'000, 1e-9);
   CHECK(sizes.next(0, 100'000'000) == 65'536);
   CHECK(sizes.next(0, 16'000) == 1'000);
   CHECK(sizes.next(0, 100) == 16);

@@ -5,6 +5,7 @@
 #include <future>
 #include <iostream>
 
+#include "answer/chunk_size.h"
 #include "commit/commit.h"
 #include "measure/clock.h"
 
@@ -102,12 +103,11 @@ struct Chunk {
 Waited answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answering& answering,
                    const std::string& label, const AnswerSink& sink) {
   // At first as many as the engine submits at once. What two chunks hold is lost if the run is killed.
-  constexpr double kSeconds = 2;
-  uint64_t count = 16'384;
+  ChunkSize size{.seconds = 2, .next = 16'384, .least = 256, .most = 262'144};
   Progress progress(label, end - first);
   const auto read = [&](Chunk& chunk) {
     chunk.first = first;
-    chunk.queries = queries.read(first, std::min(count, end - first), chunk.room);
+    chunk.queries = queries.read(first, std::min(size.next, end - first), chunk.room);
     first += chunk.queries.size();
   };
   const auto write = [&](const Chunk& chunk) {
@@ -128,8 +128,7 @@ Waited answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answe
     const double done = now();
     beside.get();
     waited.writing += now() - done;
-    const double rate = static_cast<double>(current.queries.size()) / std::max(done - start, 1e-6);
-    count = static_cast<uint64_t>(std::clamp(kSeconds * rate, 256.0, 262'144.0));
+    size.answered(current.queries.size(), done - start);
     std::swap(answered, current);
     std::swap(current, next);
   }

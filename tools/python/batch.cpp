@@ -6,6 +6,7 @@
 #include <cstring>
 #include <thread>
 
+#include "answer/chunk_size.h"
 #include "python/errands.h"
 
 namespace radar::python {
@@ -14,18 +15,6 @@ namespace {
 
 using tools::AnswerMode;
 using Clock = std::chrono::steady_clock;
-
-// Between two chunks progress is reported. The first is small, because a query may take anything from
-// a microsecond to a second; each is then as large as fits into the time, and into a cache. Answers do not depend on
-// it.
-constexpr size_t kFirstChunk = 64, kLargestChunk = 1 << 14, kGrowth = 8;
-constexpr double kChunkSeconds = 0.2;
-
-size_t nextChunk(size_t chunk, double seconds) {
-  const double wanted = double(chunk) * kChunkSeconds / std::max(seconds, 1e-9);
-  const double limit = double(std::min(chunk * kGrowth, kLargestChunk));
-  return static_cast<size_t>(std::clamp(wanted, 1.0, limit));
-}
 
 /// Calls `work` with parts of [0, count), on all cores if there is enough to do.
 template <class Work>
@@ -278,10 +267,11 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
   const bool mayRoundUp = !scene.moves();
   const size_t count = input.count();
   std::vector<Query> queries;
-  size_t chunk = kFirstChunk;
+  // Between two chunks progress is reported. The largest fits into a cache.
+  tools::ChunkSize chunk{.seconds = 0.2, .next = 64, .least = 1, .most = 1 << 14};
   for (size_t first = 0; first < count;) {
     const Clock::time_point start = Clock::now();
-    const size_t end = std::min(first + chunk, count);
+    const size_t end = std::min(first + chunk.next, count);
     queries.resize(end - first, input.options);
     inParts(end - first, [&](size_t from, size_t to) {
       Reader reader(scene.based(), input, first + from, mayRoundUp);
@@ -295,8 +285,8 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
     if (listing) answers.lists.resize(queries.size());  // there are none if no query is valid
     for (const Listed& listed : answers.lists) append(lists, listed);
+    chunk.answered(end - first, std::chrono::duration<double>(Clock::now() - start).count());
     first = end;
-    chunk = nextChunk(chunk, std::chrono::duration<double>(Clock::now() - start).count());
     afterChunk(first);
   }
   return lists;

@@ -62,8 +62,9 @@ TEST_CASE("merge writes records to .npy alone, and lines to any other file") {
   for (const std::string part : {"lines", "records.npy"}) {
     REQUIRE(runProgram(folder, "query w/queries.json --mode reference --shard 0/1 --out " + part).status == 0);
   }
-  checkRefused(folder, "merge lines --out z.npy", "z.npy: expected another file than .npy, as the shards are lines");
-  checkRefused(folder, "merge records.npy --out z.jsonl", "z.jsonl: expected a file .npy, as the shards are records");
+  checkRefused(folder, "merge lines --out z.npy",
+               "z.npy: expected another file than .npy or .csv, as the shards are lines");
+  checkRefused(folder, "merge records.npy --out z.jsonl", "z.jsonl: expected a file .npy, as the shards are");
   CHECK(runProgram(folder, "merge records.npy --out z.npy").status == 0);
   CHECK(folder.read("z.npy").starts_with("\x93NUMPY"));
   CHECK(runProgram(folder, "merge lines --out /dev/stdout").out.starts_with("{\"id\""));

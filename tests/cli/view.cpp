@@ -35,7 +35,8 @@ TEST_CASE("a page is the same whether its answers are found, or read as lines or
                          query("near", R"("dir": [0, 0, 1], "D": 8, "clearance": 0.5)")));
   // Records cannot list contacts, or what overlaps.
   std::string several = queryFile(query("all", R"("dir": [0, 0, 1], "D": 8, "hits": "all", "ignore_leaving": true)") +
-                                  "," + query("near", R"("dir": [0, 0, 1], "D": 8, "hits": 2, "clearance": 0.5)"));
+                                  "," + query("near", R"("dir": [0, 0, 1], "D": 8, "hits": 2, "clearance": 0.5)") +
+                                  "," + query("step", R"("motion": [0, 1, 9], "hits": "all", "clearance": 0.5)"));
   several.insert(several.find("], \"queries\"") - 2, ", [0, 1,0,0,0, 0,1,0,0, 0,0,1,7]");
   folder.write("several.json", several);
   folder.write("left.json", queryFile(query("free", R"("dir": [0, 0, 1], "D": 8, "skip_overlapping": true)") + "," +

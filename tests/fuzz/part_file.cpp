@@ -1,5 +1,8 @@
 // Fuzzes part files: an input is that of shard 0 of 2, which is merged with shard 1 and, if it is whole, resumed.
 #include "batch/part_file.h"
+
+#include <array>
+
 #include "batch/merge.h"
 #include "fuzz/check_batch.h"
 #include "fuzz/target.h"
@@ -18,6 +21,8 @@ constexpr const char* kQueries =
  {"id": "b", "scene": 0, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-3], "dir": [0, 0, -1], "D": 8},
  {"id": "c", "scene": 0, "sensor": [0], "dir": [1, 0, 0], "D": 8}]})";
 
+constexpr std::array kFormats{AnswerFormat::lines, AnswerFormat::records, AnswerFormat::table};
+
 /// The folder with the query file and its shards, which is the current one.
 struct Files {
   Files() {
@@ -26,7 +31,7 @@ struct Files {
     std::filesystem::current_path(folder.path());
     std::vector<std::string> warnings;
     queries.emplace("q.json", warnings);
-    for (const AnswerFormat format : {AnswerFormat::lines, AnswerFormat::records}) {
+    for (const AnswerFormat format : kFormats) {
       write(format, 1, nameOf(format));
     }
   }
@@ -76,7 +81,7 @@ void run(std::string_view input) {
 
 std::vector<std::string> seeds() {
   std::vector<std::string> seeds;
-  for (const AnswerFormat format : {AnswerFormat::lines, AnswerFormat::records}) {
+  for (const AnswerFormat format : kFormats) {
     for (const uint32_t index : {0, 1}) {
       files().write(format, index, "seed");
       seeds.push_back(files().folder.read("seed"));
@@ -86,7 +91,7 @@ std::vector<std::string> seeds() {
 }
 
 constexpr const char* kWords =
-    R"("format"~"answers"~"lines"~"records"~"queries"~"shard"~[0, 2]~[0, 1]~[4294967295, 4294967295]~)"
+    R"("format"~"answers"~"lines"~"records"~"table"~"queries"~"shard"~[0, 2]~[0, 1]~[4294967295, 4294967295]~)"
     R"("fingerprint"~"mode"~"program"~{"id": "a", ~18446744073709551615~-1~null)"
     "~\n";
 

@@ -1,6 +1,5 @@
 """Wrong arguments end with an exception that says what was expected, never otherwise."""
 
-import itertools
 
 import numpy as np
 import pytest
@@ -111,23 +110,16 @@ def test_out_must_be_able_to_take_the_answers(boxes):
     out = cyber_radar.Casts.empty((4,))
     cast = lambda: scene.cast(mesh, at(np.zeros((4, 3))), DOWN, mode="reference", out=out)  # noqa: E731
     assert "out: expected Casts, got dict" in refusal(lambda: scene.cast(mesh, None, DOWN, out={}))
-    assert "out.distance: expected a writeable" in refusal(lambda: scene.cast(mesh, None, DOWN, out=out))
-    assert "out.paper_min_l" in refusal(lambda: scene.cast(mesh, at(np.zeros((4, 3))), DOWN, mode="sampled", out=out))
-    for name, wrong in (
-        ("distance", np.zeros(4, np.float32)),
-        ("hi", np.zeros((4, 1))),
-        ("object", np.zeros(4, np.int32)),
-        ("point", np.zeros((8, 3))[::2]),
-        ("normal", np.zeros((3, 4)).T),
-        ("status", [0, 0, 0, 0]),
-    ):
-        right = getattr(out, name)
-        setattr(out, name, wrong)
-        assert f"out.{name}: expected a writeable C-contiguous array" in refusal(cast)
-        setattr(out, name, right)
-    out.triangles.flags.writeable = False
-    assert "out.triangles" in refusal(cast)
-    out.triangles.flags.writeable = True
+    assert 'Casts.empty((), "contact"), got Casts of shape (4,)' in refusal(lambda: scene.cast(mesh, None, DOWN, out=out))
+    assert '"sampled"), got' in refusal(lambda: scene.cast(mesh, at(np.zeros((4, 3))), DOWN, mode="sampled", out=out))
+    sampled = cyber_radar.Casts.empty((4,), "sampled")
+    assert "for mode sampled" in refusal(lambda: scene.cast(mesh, at(np.zeros((4, 3))), DOWN, out=sampled))
+    assert "C-contiguous" in refusal(
+        lambda: scene.cast(mesh, at(np.zeros((4, 3))), DOWN, out=cyber_radar.Casts.empty((8,))[::2])
+    )
+    out.records.flags.writeable = False
+    assert "out: expected Casts whose records are writeable" in refusal(cast)
+    out.records.flags.writeable = True
     assert same_answers(cast(), scene.cast(mesh, at(np.zeros((4, 3))), DOWN, mode="reference"))
 
 
@@ -174,7 +166,7 @@ def test_odd_arguments_never_crash(boxes):
                     slack=odd(plain=None), hits=odd(plain=2), skip_overlapping=rng.random() < 0.5,
                     ignore_leaving=rng.random() < 0.5, out=out if rng.random() < 0.1 else None,
                 )  # fmt: skip
-                answered += casts.distance.size
+                answered += casts.t.size
         except (ValueError, TypeError) as error:
             assert str(error)
             refused += 1
@@ -196,15 +188,16 @@ def test_the_compiled_half_refuses_arrays_that_do_not_fit(boxes):
         "mask": np.ones(4, np.uint32),
         "exclude_from_each": np.zeros((4, 1), np.int64),
     }
-    of_answers = cyber_radar.Casts.empty((4,)).to_dict()
+    records = cyber_radar.Casts.empty((4,)).records
     options = dict.fromkeys(cyber_radar._engine.OPTIONS, 1.0) | {"any_hit": False, "mode": "contact", "resolution": 0}
-    engine.cast((4,), of_casts | {"distances": None}, options, of_answers, lambda n: {}, None)
-    for wrong in itertools.chain(of_casts, of_answers):
-        arguments, results = of_casts | {"distances": None}, dict(of_answers)
-        of = arguments if wrong in arguments else results
-        of[wrong] = of[wrong][:2]
+    engine.cast((4,), of_casts | {"distances": None}, options, records, None)
+    for wrong in of_casts:
+        arguments = of_casts | {"distances": None, wrong: of_casts[wrong][:2]}
         with pytest.raises(ValueError):
-            engine.cast((4,), arguments, options, results, lambda n: {}, None)
+            engine.cast((4,), arguments, options, records, None)
+    for wrong in (records[:2], np.zeros(4, records.dtype.str), cyber_radar.Casts.empty((8,)).records[::2]):
+        with pytest.raises(ValueError, match="records: expected"):
+            engine.cast((4,), of_casts | {"distances": None}, options, wrong, None)
 
 
 def test_poses_may_lack_their_last_row(boxes):

@@ -1,5 +1,6 @@
 """Batches as arrays: numpy writes the queries and reads the answers, without this project's code."""
 
+import csv
 import json
 import os
 import subprocess
@@ -118,49 +119,65 @@ def test_steps_are_arrays_of_motions(tmp_path):
 
 
 @pytest.mark.parametrize("mode", ["contact", "sampled"])
-def test_records_say_what_lines_say(tmp_path, mode):
+def test_records_and_tables_say_what_lines_say(tmp_path, mode):
     arrays = some_arrays(300)
     if mode == "sampled":
         arrays = {name: arrays[name] for name in ("mesh", "pose", "dir", "D", "speed", "any_hit")}
-    save(tmp_path / "q.npy", arrays)
-    write_world(tmp_path, queries_file="q.npy")
+    queries = as_queries(arrays)
+    queries[0]["id"], queries[1]["id"], queries[2]["id"] = 'a "b", c\nd', "\r", ","
+    write_world(tmp_path, queries=queries)
     lines = [json.loads(line) for line in answer(tmp_path, "--mode", mode).splitlines()]
-    assert run(tmp_path, "query", "q.json", "--mode", mode, "--out", "a.npy").returncode == 0
+    for file in ("a.npy", "a.csv"):
+        assert run(tmp_path, "query", "q.json", "--mode", mode, "--out", file).returncode == 0
     records = np.load(tmp_path / "a.npy")
-    assert records.shape == (300,)
-    assert np.array_equal(records["query"], np.arange(300))
+    with open(tmp_path / "a.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file, strict=True))
+    assert len(rows) == len(records) == 300 and np.array_equal(records["query"], np.arange(300))
     assert len(set(records["status"])) > 1
+    codes = {"status": STATUS, "tier": TIER, "feature_a": FEATURE, "feature_b": FEATURE, "detected": [False, True, None]}
+    words = {"None": "", "True": "true", "False": "false"}
+    for record, row, line in zip(records, rows, lines):
+        for name in set(records.dtype.names) - {"query"}:
+            value, expected = record[name], line.get(name)
+            if name in codes:
+                assert codes[name][value] == expected, name
+            elif expected is None and name in {*line, "time", "paper_min_l"}:
+                assert np.all((value == -1) | np.isnan(value)), name
+            elif expected is not None:
+                assert np.array_equal(value, expected), name
+        cells = {"id": line["id"]}
+        for name, value in line.items():
+            vector = name in ("point", "normal", "sensor_point")
+            values = {f"{name}_{axis}": value and value["xyz".index(axis)] for axis in "xyz"} if vector else {name: value}
+            cells |= {key: words.get(repr(one), one) for key, one in values.items()}
+        for name, text in row.items():
+            expected = cells.get(name, "")
+            assert text == expected if isinstance(expected, str) else float(text) == expected, name
+        assert set(cells) <= set(row)
+    for command in (("compare", "a.csv", "out"), ("view", "q.json", "a.csv", "--out", "a.html")):
+        assert "a.csv: expected lines of JSON, or records in a file .npy, got a table" in run(tmp_path, *command).stderr
 
-    def same(value, expected) -> bool:
-        return np.array_equal(value, np.full(np.shape(value), np.nan) if expected is None else expected, equal_nan=True)
 
-    for record, line in zip(records, lines):
-        for key in ("t", "lo", "hi", "fraction", "point", "normal"):
-            assert same(record[key], line[key]), key
-        for key in ("time", "paper_min_l"):
-            assert same(record[key], line.get(key)), key
-        for key in ("object", "tri_a", "tri_b"):
-            assert record[key] == (-1 if line[key] is None else line[key])
-        assert STATUS[record["status"]] == line["status"]
-        assert TIER[record["tier"]] == line["tier"]
-        assert [FEATURE[record["feature_a"]], FEATURE[record["feature_b"]]] == [line["feature_a"], line["feature_b"]]
-        assert record["detected"] == {None: -1, False: 0, True: 1}[line["detected"]]
-
-
-def test_shards_and_resumed_runs_give_the_same_records(tmp_path):
-    save(tmp_path / "q.npy", some_arrays(1000))
-    write_world(tmp_path, queries_file="q.npy")
-    assert run(tmp_path, "query", "q.json", "--out", "whole.npy").returncode == 0
-    whole = (tmp_path / "whole.npy").read_bytes()
+@pytest.mark.parametrize("ending", ["npy", "csv"])
+def test_shards_and_resumed_runs_give_the_same_records(tmp_path, ending):
+    if ending == "npy":
+        save(tmp_path / "q.npy", some_arrays(1000))
+        write_world(tmp_path, queries_file="q.npy")
+    else:
+        queries = as_queries(some_arrays(1000))
+        write_world(tmp_path, queries=[{**query, "id": f'"{i}"\n,'} for i, query in enumerate(queries)])
+    assert run(tmp_path, "query", "q.json", "--out", f"whole.{ending}").returncode == 0
+    whole = (tmp_path / f"whole.{ending}").read_bytes()
     for i in range(3):
-        assert run(tmp_path, "query", "q.json", "--out", f"part-{i}.npy", "--shard", f"{i}/3").returncode == 0
-    part = (tmp_path / "part-1.npy").read_bytes()
-    assert run(tmp_path, "merge", "part-2.npy", "part-0.npy", "part-1.npy", "--out", "merged.npy").returncode == 0
-    assert (tmp_path / "merged.npy").read_bytes() == whole
+        assert run(tmp_path, "query", "q.json", "--out", f"part-{i}.{ending}", "--shard", f"{i}/3").returncode == 0
+    part = (tmp_path / f"part-1.{ending}").read_bytes()
+    parts = [f"part-{i}.{ending}" for i in (2, 0, 1)]
+    assert run(tmp_path, "merge", *parts, "--out", f"merged.{ending}").returncode == 0
+    assert (tmp_path / f"merged.{ending}").read_bytes() == whole
     # An interrupted shard: within a record.
-    (tmp_path / "part-1.npy.partial").write_bytes(part[: len(part) // 2 + 5])
-    assert run(tmp_path, "query", "q.json", "--out", "part-1.npy", "--shard", "1/3", "--resume").returncode == 0
-    assert (tmp_path / "part-1.npy").read_bytes() == part
+    (tmp_path / f"part-1.{ending}.partial").write_bytes(part[: len(part) // 2 + 5])
+    assert run(tmp_path, "query", "q.json", "--out", f"part-1.{ending}", "--shard", "1/3", "--resume").returncode == 0
+    assert (tmp_path / f"part-1.{ending}").read_bytes() == part
 
 
 def test_numpy_reads_what_workload_writes(tmp_path):

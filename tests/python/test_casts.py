@@ -35,11 +35,11 @@ def test_answers_are_those_of_brute_force():
     assert (np.isfinite(expected) == casts.touches).all()
     np.testing.assert_allclose(casts.fraction, expected, rtol=0, atol=1e-11)
     length = np.linalg.norm(displacements, axis=1)
-    np.testing.assert_allclose(casts.distance, expected * length, rtol=0, atol=1e-10)
-    assert ((casts.lo <= casts.distance) & (casts.distance <= casts.hi)).all()
+    np.testing.assert_allclose(casts.t, expected * length, rtol=0, atol=1e-10)
+    assert ((casts.lo <= casts.t) & (casts.t <= casts.hi)).all()
     hits = np.flatnonzero(casts.status == Status.HIT)
     for i in hits:
-        a, b = casts.triangles[i]
+        a, b = casts.tri_a[i], casts.tri_b[i]
         assert (a, casts.object[i] * len(faces) + b) in pairs[i]
         assert np.dot(casts.normal[i], displacements[i]) <= 0
         assert np.linalg.norm(casts.normal[i]) == pytest.approx(1)
@@ -69,8 +69,8 @@ def test_mode_sampled_bounds_the_distance_from_above():
     scene.add(mesh, at([[0, 0, 0], [5, 0, -0.25]]))
     poses = at([[0.1, 0.2, 3], [5.1, 0.2, 3], [20, 0, 0]])
     casts = scene.cast(mesh, poses, DOWN, mode="sampled", resolution=32)
-    np.testing.assert_allclose(casts.distance, [2, 2.25, np.inf], atol=1e-6)
-    assert (casts.hi >= scene.cast(mesh, poses, DOWN, mode="reference").distance).all()
+    np.testing.assert_allclose(casts.t, [2, 2.25, np.inf], atol=1e-6)
+    assert (casts.hi >= scene.cast(mesh, poses, DOWN, mode="reference").t).all()
     np.testing.assert_allclose(casts.paper_min_l[:2], [2, 2.25], atol=1e-4)
     assert casts.resolution.tolist() == [32, 32, 0]
     assert casts.detected.tolist() == [1, 1, 0]
@@ -83,7 +83,7 @@ def test_leading_shapes_broadcast_and_are_those_of_the_arrays(boxes):
     exclude, distances = rng.integers(-1, 200, (3, 4)), np.array([[[6.0]], [[7.0]]] * 5).reshape(5, 2, 1)
     casts = scene.cast(mesh, poses, displacements, exclude_from_each=exclude, distances=distances, mode="reference")
     assert casts.shape == casts.object.shape == (5, 2, 3)
-    assert casts.triangles.shape == (5, 2, 3, 2) and casts.point.shape == casts.normal.shape == (5, 2, 3, 3)
+    assert casts.tri_a.shape == (5, 2, 3) and casts.point.shape == casts.normal.shape == (5, 2, 3, 3)
     assert casts.touches.any()
     for i in np.ndindex(5, 2, 3):
         one = scene.cast(
@@ -91,7 +91,7 @@ def test_leading_shapes_broadcast_and_are_those_of_the_arrays(boxes):
             exclude_from_all=exclude[i[2]][exclude[i[2]] >= 0], distances=distances[i[0], i[1], 0],
         )  # fmt: skip
         assert one.shape == ()
-        assert one.distance == casts.distance[i] and one.object == casts.object[i]
+        assert one.t == casts.t[i] and one.object == casts.object[i]
         assert (one.point == casts.point[i]).all() or one.status == Status.CLEAR
 
 
@@ -107,7 +107,7 @@ def test_numbers_of_any_type_and_layout_mean_the_same(boxes):
                   poses.astype(">f8")):  # fmt: skip
         assert same_answers(scene.cast(np.uint8(mesh), given, [0, 0, -10], mode="reference"), expected)
     backwards = scene.cast(mesh, poses[::-1], DOWN, mode="reference")
-    assert (backwards.distance[::-1] == expected.distance).all()
+    assert (backwards.t[::-1] == expected.t).all()
 
 
 def test_a_distance_is_exact_where_single_precision_would_round(boxes):
@@ -115,7 +115,7 @@ def test_a_distance_is_exact_where_single_precision_would_round(boxes):
     mesh = scene.add_mesh(box(1, 1, 1), FACES)
     scene.add(mesh, at([1e8, 0, 0]))
     casts = scene.cast(mesh, at([1e8 - 3.0625, 0.25, 0.25]), [5, 0, 0], mode="reference")
-    assert casts.distance == 2.0625
+    assert casts.t == 2.0625
 
 
 SMALL = np.array([way for way in np.ndindex(11, 6, 6) if way != (5, 0, 0)], float) * [1, 1, -1] - [5, 0, 0]
@@ -144,11 +144,11 @@ def test_contact_at_the_end_of_a_displacement_is_found_and_none_beyond(mode, opt
     assert (casts.status == Status.HIT).all()
     if "any_hit" not in options:
         length = np.linalg.norm(SMALL, axis=1)
-        np.testing.assert_allclose(casts.distance, length, rtol=4e-16)
+        np.testing.assert_allclose(casts.t, length, rtol=4e-16)
         assert (casts.fraction == 1).all() and (casts.lo <= length).all() and (length <= casts.hi).all()
     if "hits" in options:
         assert casts.hits.cast.tolist() == list(range(len(SMALL)))
-        assert (casts.hits.distance == casts.distance).all() and (casts.hits.hi == casts.hi).all()
+        assert (casts.hits.t == casts.t).all() and (casts.hits.hi == casts.hi).all()
     beyond = scene.cast(mesh, at(starts - SMALL * 2.0**-45), SMALL, mode=mode, **options)
     assert (beyond.status == Status.CLEAR).all()
 
@@ -160,7 +160,7 @@ def test_mode_sampled_finds_contact_at_the_end_of_a_displacement():
     ways = SMALL[::7]
     casts = scene.cast(mesh, at(starts_that_end_in_touch(ways)), ways, mode="sampled", resolution=64)
     assert (casts.status == Status.HIT).all()
-    np.testing.assert_allclose(casts.distance, np.linalg.norm(ways, axis=1), rtol=1e-15)
+    np.testing.assert_allclose(casts.t, np.linalg.norm(ways, axis=1), rtol=1e-15)
 
 
 @pytest.mark.parametrize("mode", ["reference", "contact"])
@@ -176,7 +176,7 @@ def test_edges_that_graze_for_a_moment_of_a_step_touch(mode):
     scene.set_motions(objects, displacements - passing)
     casts = scene.cast(mesh, at(places + [2, 2, 0] - passing / 2), displacements, mode=mode)
     assert (casts.object == objects).all() and (casts.fraction == 0.5).all()
-    np.testing.assert_allclose(casts.distance, np.linalg.norm(displacements, axis=1) / 2, rtol=4e-16)
+    np.testing.assert_allclose(casts.t, np.linalg.norm(displacements, axis=1) / 2, rtol=4e-16)
     beside = scene.cast(mesh, at(places + [2, 2 + 2.0**-40, 0] - passing / 2), displacements, mode=mode)
     assert not beside.touches.any()
 
@@ -188,7 +188,7 @@ def test_distances_of_casts_along_an_axis_are_rounded_once():
     # 1 / 49 * 49 is not 1 in doubles, and so for many more.
     lengths = np.arange(1.0, 200.0)
     casts = scene.cast(mesh, at([0, 0, 3]), lengths[:, None] * np.array([0, 0, -1]), mode="reference")
-    assert (casts.distance == 1).all() and (casts.lo <= 1).all() and (1 <= casts.hi).all()
+    assert (casts.t == 1).all() and (casts.lo <= 1).all() and (1 <= casts.hi).all()
 
 
 def test_brackets_of_distances_hold_where_lengths_are_whole():
@@ -198,7 +198,7 @@ def test_brackets_of_distances_hold_where_lengths_are_whole():
     # Along (1, 2, 2), of length 3, the boxes meet after 3 of each length.
     lengths = np.arange(6.0, 606.0, 3.0)
     casts = scene.cast(mesh, at([0, -1, -4]), lengths[:, None] * np.array([1, 2, 2]) / 3, mode="reference")
-    np.testing.assert_allclose(casts.distance, 3, rtol=1e-15)
+    np.testing.assert_allclose(casts.t, 3, rtol=1e-15)
     assert (casts.lo <= 3).all() and (3 <= casts.hi).all() and (casts.hi - casts.lo < 3e-14).all()
 
 
@@ -218,7 +218,7 @@ def test_a_clearance_counts_to_the_end_of_a_displacement(moves):
             assert (casts.status == status).all()
             if status == Status.HIT:
                 length = np.linalg.norm(SMALL, axis=1)
-                assert (casts.distance == casts.lo).all() and (casts.hi <= length * (1 + 1e-15)).all()
+                assert (casts.t == casts.lo).all() and (casts.hi <= length * (1 + 1e-15)).all()
                 assert (casts.hi - casts.lo <= 1.001e-9).all()
 
 
@@ -229,9 +229,9 @@ def test_displacements_of_any_size_are_taken_as_they_are():
     way = np.array([0.0, 3.0, -5.0])
     for size in (2.0**-1070, 2.0**-600, 2.0**600, 2.0**996):
         touching = scene.cast(mesh, at([0, 0, 2]), way * size, mode="reference", ignore_leaving=True)
-        assert touching.distance == 0 and touching.lo == touching.hi == touching.fraction == 0
+        assert touching.t == 0 and touching.lo == touching.hi == touching.fraction == 0
         beside = scene.cast(mesh, at([0, 0, 3]), way * size, mode="reference")
-        assert beside.distance == (np.inf if size < 1 else pytest.approx(np.sqrt(34) / 5))
+        assert beside.t == (np.inf if size < 1 else pytest.approx(np.sqrt(34) / 5))
     long = scene.cast(mesh, None, way * 2.0**1000, mode="reference")
     assert long.status == Status.INVALID
     assert list(long.reasons)[0].startswith("displacements: expected 3 finite numbers of at most 2^1000, got")
@@ -255,9 +255,9 @@ def test_a_crate_leaves_the_floor_it_rests_on():
     ways = [[0, 0, 3], [3, 0, 0], [0, 0, -3]]
     assert scene.cast(crate, at([0, 0, 1]), ways, mode="reference").status.tolist() == [Status.OVERLAP] * 3
     casts = scene.cast(crate, at([0, 0, 1]), ways, ignore_leaving=True, mode="reference")
-    assert casts.distance.tolist() == [np.inf, np.inf, 0]
+    assert casts.t.tolist() == [np.inf, np.inf, 0]
     sunk = scene.cast(crate, at([0, 0, 1 - 1e-9]), ways, ignore_leaving=True, slack=1e-8, mode="reference")
-    assert sunk.distance.tolist() == [np.inf, np.inf, 0]
+    assert sunk.t.tolist() == [np.inf, np.inf, 0]
 
 
 def test_hits_and_what_overlaps_are_listed():
@@ -268,7 +268,7 @@ def test_hits_and_what_overlaps_are_listed():
     casts = scene.cast(mesh, poses, DOWN, hits="all", skip_overlapping=True, mode="reference")
     assert casts.hits.offsets.tolist() == [0, 3, 4, 4]
     assert casts.hits.object.tolist() == [0, 1, 2, 4]
-    assert casts.hits.distance.tolist() == [2, 5, 8, 1]
+    assert casts.hits.t.tolist() == [2, 5, 8, 1]
     assert casts.hits.cast.tolist() == [0, 0, 0, 1]
     assert casts.hits.object[casts.hits.of(0)].tolist() == [0, 1, 2]
     assert casts.hits.of(2) == slice(4, 4)
@@ -310,9 +310,9 @@ def test_an_index_gives_the_casts_there_with_all_that_they_list(boxes):
 
 def test_casts_have_a_length_and_are_gone_through():
     casts = cyber_radar.Casts.empty((3, 2))
-    casts.distance[:] = np.arange(6).reshape(3, 2)
+    casts.t[:] = np.arange(6).reshape(3, 2)
     assert len(casts) == 3
-    assert [[float(one.distance) for one in row] for row in casts] == [[0, 1], [2, 3], [4, 5]]
+    assert [[float(one.t) for one in row] for row in casts] == [[0, 1], [2, 3], [4, 5]]
     assert casts[0, 0].shape == () and casts[0, 0].point.shape == (3,)
     for ask in (lambda: len(casts[0, 0]), lambda: list(casts[0, 0])):
         with pytest.raises(TypeError, match=r"casts of shape \(\) are one cast, without a length"):
@@ -322,15 +322,18 @@ def test_casts_have_a_length_and_are_gone_through():
             casts[index]
 
 
-def test_casts_become_a_dict_of_arrays(tmp_path):
-    for mode, count in (("contact", 13), ("sampled", 15)):
+def test_casts_are_records_and_become_a_dict_of_arrays(tmp_path):
+    for mode, count in (("contact", 15), ("sampled", 17)):
         casts = cyber_radar.Casts.empty((5, 2), mode)
+        casts.records[:] = np.zeros((), casts.records.dtype)
         arrays = casts.to_dict()
-        assert len(arrays) == count and arrays["distance"] is casts.distance
-        assert all(array.shape[:2] == (5, 2) for array in arrays.values())
-        np.savez(tmp_path / "casts.npz", **arrays)
-        with np.load(tmp_path / "casts.npz") as read:
-            assert same_answers(cyber_radar.Casts(**read), casts)
+        assert len(arrays) == count and np.shares_memory(arrays["t"], casts.t)
+        assert all(name in dir(casts) and f"\n    {name}: " in cyber_radar.Casts.__doc__ for name in arrays)
+        assert all(array.shape[:2] == (5, 2) and array.flags.aligned for array in arrays.values())
+        np.save(tmp_path / "casts.npy", casts.records)
+        assert same_answers(cyber_radar.Casts(np.load(tmp_path / "casts.npy")), casts)
+    with pytest.raises(AttributeError, match="Casts have no 'distance'"):
+        casts.distance
 
 
 def test_an_index_of_lists_has_errors_of_its_own():
@@ -410,19 +413,19 @@ def test_masks_exclusions_clearance_and_any_hit():
     mesh = scene.add_mesh(box(1, 1, 1), FACES)
     scene.add(mesh, at([[0, 0, -3], [0, 0, -6]]), mask=[1, 2])
     cast = lambda **options: scene.cast(mesh, None, DOWN, mode="reference", **options)  # noqa: E731
-    assert cast(mask=[1, 2, 3, 4]).distance.tolist() == [2, 5, 2, np.inf]
-    assert cast(exclude_from_each=[[-1, -1], [0, -1], [1, 0]]).distance.tolist() == [2, 5, np.inf]
-    assert [cast(exclude_from_all=ids).distance for ids in ([], 0, [0], [0, 1])] == [2, 5, 5, np.inf]
-    assert cast(exclude_from_all=[0], exclude_from_each=[[-1], [1]]).distance.tolist() == [5, np.inf]
+    assert cast(mask=[1, 2, 3, 4]).t.tolist() == [2, 5, 2, np.inf]
+    assert cast(exclude_from_each=[[-1, -1], [0, -1], [1, 0]]).t.tolist() == [2, 5, np.inf]
+    assert [cast(exclude_from_all=ids).t for ids in ([], 0, [0], [0, 1])] == [2, 5, 5, np.inf]
+    assert cast(exclude_from_all=[0], exclude_from_each=[[-1], [1]]).t.tolist() == [5, np.inf]
     near = cast(clearance=0.5, tolerance=1e-3)
     assert 1.5 - 1e-3 <= near.lo <= 1.5 <= near.hi <= near.lo + 1e-3
     any_hit = cast(any_hit=True)
     assert any_hit.status == Status.HIT and any_hit.object == -1
-    assert any_hit.distance == any_hit.hi == 10 and any_hit.lo == 0 and any_hit.fraction == 1  # it comes by then
+    assert any_hit.t == any_hit.hi == 10 and any_hit.lo == 0 and any_hit.fraction == 1  # it comes by then
     there = scene.cast(mesh, at([0, 0, -3.5]), DOWN, mode="reference", any_hit=True)
-    assert there.status == Status.HIT and there.distance == 10
+    assert there.status == Status.HIT and there.t == 10
     assert cast(any_hit=True, mask=4).status == Status.CLEAR
-    assert cast(distances=[1.5, 2.5]).distance.tolist() == [np.inf, 2]
+    assert cast(distances=[1.5, 2.5]).t.tolist() == [np.inf, 2]
 
 
 def test_out_is_filled_and_returned(boxes):
@@ -431,12 +434,12 @@ def test_out_is_filled_and_returned(boxes):
     poses, displacements = random_poses(rng, 50, 20), rng.normal(size=(50, 3)) * 5
     expected = scene.cast(mesh, poses, displacements, mode="reference")
     out = cyber_radar.Casts.empty((50,))
-    distance = out.distance
+    t = out.t
     assert scene.cast(mesh, poses, displacements, mode="reference", out=out) is out
-    assert out.distance is distance
+    assert np.shares_memory(out.t, t)
     assert same_answers(out, expected)
     scene.cast(mesh, poses[::-1], displacements[::-1], mode="reference", out=out)
-    assert (distance[::-1] == expected.distance).all()
+    assert (t[::-1] == expected.t).all()
 
 
 def test_one_bad_cast_is_invalid_and_leaves_the_others_alone(boxes):
@@ -455,9 +458,9 @@ def test_one_bad_cast_is_invalid_and_leaves_the_others_alone(boxes):
         assert np.flatnonzero(casts.status == Status.INVALID).tolist() == bad
         assert sorted(np.concatenate(list(casts.reasons.values())).tolist()) == bad
         assert casts.reasons["displacements: expected 3 finite numbers of at most 2^1000, got nan"].tolist() == [4, 899]
-        assert np.isnan(casts.distance[bad]).all() and (casts.object[bad] == -1).all()
+        assert np.isnan(casts.t[bad]).all() and (casts.object[bad] == -1).all()
         good = np.setdiff1d(np.arange(900), bad)
-        assert (casts.distance[good] == expected.distance[good]).all()
+        assert (casts.t[good] == expected.t[good]).all()
         for i in good:
             assert (casts.hits.object[casts.hits.of(i)] == expected.hits.object[expected.hits.of(i)]).all()
             rows = casts.overlapping.of(i), expected.overlapping.of(i)
@@ -476,4 +479,4 @@ def test_a_scene_without_objects_is_free():
     scene = cyber_radar.Scene()
     mesh = scene.add_mesh(box(1, 1, 1), FACES)
     for mode in ("reference", "contact", "sampled"):
-        assert scene.cast(mesh, None, DOWN, mode=mode).distance == np.inf
+        assert scene.cast(mesh, None, DOWN, mode=mode).t == np.inf

@@ -88,7 +88,7 @@ def test_the_exact_height_lies_between_those_of_the_two_meshes(cutter):
         bracket = []
         for tool in (cutter.inscribed(48, 12), cutter.circumscribed(48, 12)):
             casts = scene.cast(scene.add_mesh(*tool), poses, [0, 0, -200], mode="reference")
-            bracket.append(high[2] + 1 - casts.distance)
+            bracket.append(high[2] + 1 - casts.t)
         assert (bracket[0] <= expected + 1e-9).all() and (expected <= bracket[1] + 1e-9).all()
         touched = np.isfinite(expected)
         assert 100 < touched.sum()

@@ -215,14 +215,14 @@ def test_threads_may_share_a_scene(boxes):
     expected = scene.cast(mesh, poses, displacements)
     with concurrent.futures.ThreadPoolExecutor(4) as threads:
         parts = list(
-            threads.map(lambda i: scene.cast(mesh, poses[i::4], displacements[i::4], hits=2).distance, range(4))
+            threads.map(lambda i: scene.cast(mesh, poses[i::4], displacements[i::4], hits=2).t, range(4))
         )
     for i, part in enumerate(parts):
-        assert (part == expected.distance[i::4]).all()
+        assert (part == expected.t[i::4]).all()
 
 
 def _distances(scene, mesh, poses, mode):
-    return scene.cast(mesh, poses, DOWN, mode=mode).distance
+    return scene.cast(mesh, poses, DOWN, mode=mode).t
 
 
 # Python 3.12 and later warn of every fork of a process that has several threads.
@@ -235,7 +235,7 @@ many_threads = pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:
 def test_other_processes_answer_with_the_pickled_scene(boxes, start, mode):
     scene, mesh = boxes
     poses, _ = many(40)
-    expected = scene.cast(mesh, poses, DOWN, mode=mode).distance  # with what runs it open before a fork
+    expected = scene.cast(mesh, poses, DOWN, mode=mode).t  # with what runs it open before a fork
     with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context(start)) as processes:
         parts = [processes.submit(_distances, scene, mesh, poses[i::2], mode) for i in range(2)]
         for i, part in enumerate(parts):
@@ -257,7 +257,7 @@ def test_a_forked_process_opens_devices_of_its_own(boxes):
     queue = context.SimpleQueue()
     process = context.Process(target=_cast_inherited, args=(queue,))
     process.start()
-    assert (queue.get() == expected.distance).all()
+    assert (queue.get() == expected.t).all()
     process.join()
     assert process.exitcode == 0
 
@@ -332,5 +332,5 @@ def test_a_million_casts_need_no_more_than_their_arrays():
     held = sum(getattr(casts, name).nbytes for name in vars(casts) if isinstance(getattr(casts, name), np.ndarray))
     assert held == 117_000_000
     assert _memory() - before < held + 64e6
-    assert casts.distance.shape == (1_000_000,) and not casts.touches.any()
-    assert pickle.loads(pickle.dumps(scene.cast(mesh, far[0], DOWN, mode="reference"))).distance == np.inf
+    assert casts.t.shape == (1_000_000,) and not casts.touches.any()
+    assert pickle.loads(pickle.dumps(scene.cast(mesh, far[0], DOWN, mode="reference"))).t == np.inf

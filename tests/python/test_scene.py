@@ -39,7 +39,7 @@ def test_objects_move():
         assert scene.cast(mesh, None, DOWN, mode=mode).object == 1
     assert (scene.objects().transforms == at([[0, 0, -7], [0, 0, -6]])).all()
     scene.set_transforms([[0, 1]], at([3, 0, 0]))
-    assert scene.cast(mesh, None, [5, 0, 0], mode="reference").distance == 2
+    assert scene.cast(mesh, None, [5, 0, 0], mode="reference").t == 2
 
 
 def test_objects_move_during_a_cast():
@@ -51,9 +51,9 @@ def test_objects_move_during_a_cast():
     for mode in ("reference", "contact"):
         casts = scene.cast(mesh, None, [[0, 0, 8], [0, 0, 0], [0, 0, -16], [5, 0, 0]], mode=mode, hits="all")
         assert casts.fraction.tolist() == [0.5, 1.0, 0.5, np.inf]
-        assert casts.distance.tolist() == [4, 0, 8, np.inf]
+        assert casts.t.tolist() == [4, 0, 8, np.inf]
         assert casts.object.tolist() == [0, 0, 1, -1]
-        assert casts.hits.distance.tolist() == [4, 0, 8] and casts.hits.fraction.tolist() == [0.5, 1, 0.5]
+        assert casts.hits.t.tolist() == [4, 0, 8] and casts.hits.fraction.tolist() == [0.5, 1, 0.5]
         assert (casts.point[1] == [0, 0, 0.5]).any()
     assert scene.objects().motions.tolist() == [[0, 0, -8], [0, 0, 0]]
     again = pickle.loads(pickle.dumps(scene))
@@ -70,9 +70,9 @@ def test_meshes_deform():
     scene.add(mesh, at([0, 0, -5]))
     for mode in ("reference", "contact", "sampled"):
         scene.set_vertices(mesh, box(1, 1, 1))
-        assert scene.cast(still, None, DOWN, mode=mode, resolution=32).distance == pytest.approx(4)
+        assert scene.cast(still, None, DOWN, mode=mode, resolution=32).t == pytest.approx(4)
         scene.set_vertices(mesh, box(1, 1, 3))
-        assert scene.cast(still, None, DOWN, mode=mode, resolution=32).distance == pytest.approx(3)
+        assert scene.cast(still, None, DOWN, mode=mode, resolution=32).t == pytest.approx(3)
     with pytest.raises(ValueError, match=r"vertices: expected shape \(8, 3\), got shape \(7, 3\)"):
         scene.set_vertices(mesh, box(1, 1, 1)[:7])
 
@@ -128,7 +128,7 @@ def test_a_mesh_far_from_the_origin_loses_nothing():
             one = far.cast(0, poses @ at(-offset - [0, 0, up]), ways, mode=mode)
             other = near.cast(0, poses @ at([0, 0, -up]), ways, mode=mode)
             # These turned poses are themselves rounded to doubles of 4,512,350.
-            np.testing.assert_allclose(one.distance, other.distance, rtol=0, atol=1e-7)
+            np.testing.assert_allclose(one.t, other.t, rtol=0, atol=1e-7)
             assert other.touches.sum() > 100
 
     agree(up=0)
@@ -231,7 +231,7 @@ def test_devices_are_listed_and_chosen():
     mesh = absent.add_mesh(box(1, 1, 1), FACES)
     with pytest.raises(cyber_radar.Error, match=f"{len(devices)}"):
         absent.cast(mesh, None, DOWN)
-    assert absent.cast(mesh, None, DOWN, mode="reference").distance == np.inf
+    assert absent.cast(mesh, None, DOWN, mode="reference").t == np.inf
 
 
 def test_versions_name_what_was_built():

@@ -38,7 +38,7 @@ def test_a_page_has_the_casts_and_the_scene(tmp_path):
     assert shown["queries"]["ignored"] == {"0": [2]}
     assert list(shown["reasons"]) == ["3"]
     assert numbers(shown["scenes"][0]["number"]).tolist() == [0, 2, 3]
-    np.testing.assert_array_equal(numbers(shown["answers"]["t"]), casts.distance.ravel())
+    np.testing.assert_array_equal(numbers(shown["answers"]["t"]), casts.t.ravel())
     assert numbers(shown["answers"]["status"]).tolist() == casts.status.ravel().tolist() == [0, 1, 0, 4]
     np.testing.assert_array_equal(numbers(shown["queries"]["way"]).reshape(4, 3)[:3], [[20, 0, 0]] * 3)
     np.testing.assert_array_equal(numbers(shown["queries"]["at"]).reshape(4, 3)[2], [8, 0, 0])
@@ -73,7 +73,7 @@ def test_a_page_has_every_option_and_what_is_listed(tmp_path):
         "2": {"slack": 1e-9},
     }
     assert numbers(shown["hits"]["object"]).tolist() == casts.hits.object.tolist()
-    np.testing.assert_array_equal(numbers(shown["hits"]["t"]), casts.hits.distance)
+    np.testing.assert_array_equal(numbers(shown["hits"]["t"]), casts.hits.t)
     part = page_data(casts[1:].show(tmp_path / "part.html"))
     assert numbers(part["hits"]["object"]).tolist() == casts.hits.object[casts.hits.of(1)].tolist()
 

@@ -45,7 +45,9 @@ std::vector<Asked> allKinds() {
   std::vector<Asked> all(9);
   for (size_t i = 0; i < all.size(); ++i) all[i].query.id = "\"" + std::to_string(i) + "\"\n";
   all[0].answer.reason = "out of \"memory\"";
-  all[1].answer.result = hit();
+  all[0].query.scene = 1;
+  // Of what nobody asked, nothing is listed.
+  all[1].answer = {.result = hit(), .listed = {.hits = {hit()}, .overlapping = {3}}};
   all[2].answer = {.result = hit(), .mode = AnswerMode::sampled};
   all[2].answer.result.tier = Tier::sampled;
   all[3].answer.result = Result(Status::clear);

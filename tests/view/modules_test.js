@@ -20,7 +20,7 @@ const poses = (places) =>
 function answersOf(rows) {
   const of = (type, name, none) => array(type, rows.flatMap((row) => row[name] ?? none));
   const numbers = Object.fromEntries(["t", "lo", "hi", "gap"].map((name) => [name, of("f8", name, NaN)]));
-  const ids = Object.fromEntries(["object", "triA", "triB"].map((name) => [name, of("u4", name, NONE)]));
+  const ids = Object.fromEntries(["object", "tri_a", "tri_b"].map((name) => [name, of("u4", name, NONE)]));
   const places = Object.fromEntries(["point", "normal"].map((name) => [name, of("f8", name, [NaN, NaN, NaN])]));
   return { status: array("u1", rows.map(({ status }) => STATUSES.indexOf(status))), ...numbers, ...ids, ...places };
 }
@@ -52,7 +52,7 @@ function dataOf(rows) {
     left: by("left"), reasons: by("reasons"), others: by("others"), scopes: {},
   }));
 }
-const HIT = { status: "hit", t: 3, lo: 3, hi: 3, object: 0, triA: 0, triB: 1, gap: 0, point: [-1, 0, 0], normal: [-1, 0, 0] };
+const HIT = { status: "hit", t: 3, lo: 3, hi: 3, object: 0, tri_a: 0, tri_b: 1, gap: 0, point: [-1, 0, 0], normal: [-1, 0, 0] };
 const CLEAR = { status: "clear", t: Infinity, lo: Infinity, hi: Infinity };
 
 test("an answer says how far its sensor goes, and when it touches something", () => {

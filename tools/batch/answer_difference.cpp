@@ -1,5 +1,6 @@
 #include "batch/answer_difference.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -7,23 +8,28 @@
 #include <stdexcept>
 #include <vector>
 
+#include "batch/answer_reader.h"
 #include "batch/answer_rows.h"
-#include "batch/columns.h"
 #include "batch/json_output.h"
 #include "batch/mapped_file.h"
 #include "batch/part_file.h"
-#include "import/json_input.h"
 
 namespace radar::tools {
 
 namespace {
 
+constexpr std::array kCompared{"t", "object", "tri_a", "tri_b"};
 /// NaN for null.
-struct Contact {
-  double t = NAN;
-  std::array<double, 3> ids{NAN, NAN, NAN};
-};
-constexpr std::array<const char*, 3> kIds{"object", "tri_a", "tri_b"};
+using Contact = std::array<double, kCompared.size()>;
+
+/// `in`: what memberIn() reads.
+template <class... In>
+Contact contactIn(const In&... in) {
+  Contact contact;
+  std::ranges::transform(kCompared, contact.begin(),
+                         [&](const char* name) { return memberIn(in..., *findAnswerField(name)); });
+  return contact;
+}
 
 /// What is compared of an answer.
 struct Row {
@@ -45,9 +51,8 @@ class LineSource : public RowSource {
   explicit LineSource(const std::filesystem::path& file)
       : name_(file.string()), mapped_(file, "an answer file"), rest_(mapped_.bytes()) {
     if (!rest_.starts_with("{\"format\": \"cyber-radar-part-")) return;
-    if (partFrom(name_, rest_).format == AnswerFormat::records) {
-      throw InputError(name_, "",
-                       "expected lines or a file .npy, got records of a shard: cyber-radar merge joins them");
+    if (partFrom(name_, rest_).format != AnswerFormat::lines) {
+      throw InputError(name_, "", "expected lines or a file .npy, got others of a shard: cyber-radar merge joins them");
     }
     rest_.remove_prefix(headerLength(rest_));
     before_ = 1;
@@ -61,8 +66,7 @@ class LineSource : public RowSource {
     const nlohmann::json json = parseJson(where, line);
     const JsonValue root(where, json);
     ++read_;
-    Row row{.contact = contactIn(root)};
-    row.id = root.member("id").string();
+    Row row{.id = root.member("id").string(), .contact = contactIn(root)};
     const JsonValue status = root.member("status");
     row.status = status.guard([&] { return statusFrom(status.string()); });
     root.ifHas("hits", [&](const JsonValue& hits) {
@@ -77,16 +81,6 @@ class LineSource : public RowSource {
   }
 
  private:
-  static double numberIn(const JsonValue& object, const char* name) {
-    const JsonValue value = object.member(name);
-    return value.json().is_null() ? double{NAN} : value.number();
-  }
-  static Contact contactIn(const JsonValue& object) {
-    Contact contact{.t = numberIn(object, "t")};
-    for (size_t k = 0; k < kIds.size(); ++k) contact.ids[k] = numberIn(object, kIds[k]);
-    return contact;
-  }
-
   std::string name_;
   MappedFile mapped_;
   std::string_view rest_;
@@ -95,42 +89,22 @@ class LineSource : public RowSource {
 
 class RecordSource : public RowSource {
  public:
-  explicit RecordSource(const std::filesystem::path& file) : name_(file.string()), columns_(file) {}
+  explicit RecordSource(const std::filesystem::path& file) : columns_(file) {}
 
   std::optional<Row> next() override {
     if (read_ == columns_.rows()) return std::nullopt;
-    Row row;
-    const uint64_t code = column("status").whole(read_);
-    if (code > static_cast<uint64_t>(Status::invalid)) {
-      throw InputError(name_, "record " + std::to_string(read_) + ": status",
-                       "expected a number from 0 to 4, got " + std::to_string(code));
-    }
-    row.status = static_cast<Status>(code);
-    const Column& t = column("t");
-    if (t.kind != 'f') throw InputError(name_, "t", "expected floats, got " + t.type());
-    row.contact.t = t.real(read_);
-    for (size_t k = 0; k < kIds.size(); ++k) {
-      const uint64_t id = column(kIds[k]).whole(read_);
-      row.contact.ids[k] = id == ~uint64_t{0} ? double{NAN} : static_cast<double>(id);
-    }
-    ++read_;
-    return row;
+    const double status = memberIn(columns_, read_, *findAnswerField("status"));
+    return Row{.status = std::isnan(status) ? Status::invalid : static_cast<Status>(static_cast<uint32_t>(status)),
+               .contact = contactIn(columns_, read_++)};
   }
 
  private:
-  const Column& column(const char* name) const {
-    const Column* found = columns_.find(name);
-    if (found && found->width() == 1) return *found;
-    throw InputError(name_, "", "expected records of cyber-radar query, with a column " + std::string(name));
-  }
-
-  std::string name_;
   Columns columns_;
   uint64_t read_ = 0;
 };
 
 std::unique_ptr<RowSource> sourceOf(const std::filesystem::path& file) {
-  if (answerFormatOf(file) == AnswerFormat::records) return std::make_unique<RecordSource>(file);
+  if (readFormatOf(file) == AnswerFormat::records) return std::make_unique<RecordSource>(file);
   return std::make_unique<LineSource>(file);
 }
 
@@ -168,11 +142,10 @@ class Comparison {
 
  private:
   std::string between(const Contact& a, const Contact& b, const std::string& place) {
-    const double apart = std::abs(a.t - b.t);
-    if (!areEqual(a.t, b.t) && !(apart <= within_)) return differ(place + "t", textOf(a.t), textOf(b.t));
-    if (apart > farthest_) farthest_ = apart;
-    for (size_t k = 0; k < kIds.size(); ++k) {
-      if (!areEqual(a.ids[k], b.ids[k])) return differ(place + kIds[k], textOf(a.ids[k]), textOf(b.ids[k]));
+    for (size_t k = 0; k < kCompared.size(); ++k) {
+      const double apart = std::abs(a[k] - b[k]), within = k == 0 ? within_ : 0;
+      if (!areEqual(a[k], b[k]) && !(apart <= within)) return differ(place + kCompared[k], textOf(a[k]), textOf(b[k]));
+      if (apart > farthest_) farthest_ = apart;
     }
     return "";
   }

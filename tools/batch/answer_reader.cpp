@@ -4,72 +4,63 @@
 #include <functional>
 
 #include "batch/answer_rows.h"
-#include "batch/columns.h"
 #include "batch/mapped_file.h"
-#include "import/json_input.h"
 
 namespace radar::tools {
 
 namespace {
 
-/// One row of a file, whose members have the names that lines give them.
+/// One row of a file.
 struct RowReader {
+  const std::string& file;
   std::string place;  ///< for messages
   const QuerySpec& query;
-  std::function<double(const char* name, size_t part)> number;  ///< NaN for null
+  /// NaN for null; of a code, its number.
+  std::function<double(const AnswerField& field, size_t part)> number;
+
+  [[noreturn]] void refuse(const char* name, const std::string& problem) const {
+    throw InputError(file, place + ": " + name, problem);
+  }
 };
 
-uint32_t idIn(const RowReader& row, const char* name, uint64_t limit, const std::string& file) {
-  const double value = row.number(name, 0);
-  if (std::isnan(value)) return kNone;
-  if (value >= 0 && value < static_cast<double>(limit)) return static_cast<uint32_t>(value);
-  throw InputError(file, row.place + ": " + name,
-                   "expected a whole number below " + std::to_string(limit) + ", got " + inShortest(value));
+void requireBelow(const RowReader& row, const char* name, uint64_t limit) {
+  const double value = row.number(*findAnswerField(name), 0);
+  if (std::isnan(value) || (value >= 0 && value < static_cast<double>(limit))) return;
+  row.refuse(name, "expected a whole number below " + std::to_string(limit) + ", got " + inShortest(value));
 }
 
-Result resultOf(const RowReader& row, Status status, const Workload& workload, const std::string& file) {
-  Result result(status);
+/// `status`: of a contact in a list, which has none of its own.
+Result resultOf(const RowReader& row, const Workload& workload, std::optional<Status> status = {}) {
   const QuerySpec& query = row.query;
-  const auto read = [&](double& to, const char* distance, const char* fraction) {
-    const double value = row.number(query.motion ? fraction : distance, 0);
-    if (!std::isnan(value)) to = value;
-  };
-  read(result.t, "t", "fraction");
-  read(result.lo, "lo", "fraction_lo");
-  read(result.hi, "hi", "fraction_hi");
-  result.object = idIn(row, "object", workload.objectCount(query.scene), file);
-  result.triA = idIn(row, "tri_a", workload.meshes[query.mesh].triangleCount(), file);
-  if (result.object != kNone) {
-    const uint32_t touched = workload.instance(query.scene, result.object).mesh;
-    result.triB = idIn(row, "tri_b", workload.meshes[touched].triangleCount(), file);
+  const AnswerField& ofStatus = *findAnswerField("status");
+  const double code = status ? double(*status) : row.number(ofStatus, 0);
+  if (std::isnan(code)) row.refuse("status", "expected a status, got none");
+  Result result(static_cast<Status>(static_cast<uint32_t>(code)));
+  requireBelow(row, "object", workload.objectCount(query.scene));
+  requireBelow(row, "tri_a", workload.meshes[query.mesh].triangleCount());
+  for (const AnswerField& field : answerFields()) {
+    if (!field.set || &field == &ofStatus || field.line == When::never) continue;
+    const AnswerField& from = query.motion && field.ofStep ? *findAnswerField(field.ofStep) : field;
+    for (size_t part = 0; part < field.width; ++part) field.set(result, row.number(from, part), part);
   }
-  const bool touches = result.object != kNone && (status == Status::hit || status == Status::overlap);
-  result.gap = query.clearance > 0 ? row.number("gap", 0) : touches ? 0 : double{NAN};
-  for (size_t k = 0; k < 3; ++k) {
-    result.point[k] = row.number("point", k);
-    result.normal[k] = row.number("normal", k);
+  if (result.object == kNone) {
+    result.triB = kNone;
+  } else {
+    requireBelow(row, "tri_b", workload.meshes[workload.instance(query.scene, result.object).mesh].triangleCount());
   }
+  const bool touches = result.object != kNone && (result.status == Status::hit || result.status == Status::overlap);
+  if (!(query.clearance > 0)) result.gap = touches ? 0 : double{NAN};
   return result;
 }
 
-/// The members of a line, or of a contact in its list.
-RowReader membersOf(const JsonValue& from, const std::string& place, const QuerySpec& query) {
-  return {place, query, [from](const char* name, size_t part) {
-            if (!from.has(name) || from.member(name).json().is_null()) return double{NAN};
-            const JsonValue value = from.member(name);
-            if (!value.json().is_array()) return value.number();
-            if (value.size() != 3) value.expected("three numbers");
-            return value[part].json().is_null() ? NAN : value[part].number();  // too large for a double
-          }};
+RowReader membersOf(const JsonValue& from, const std::string& file, const std::string& place, const QuerySpec& query) {
+  return {file, place, query, [from](const AnswerField& field, size_t part) { return memberIn(from, field, part); }};
 }
 
-/// A contact in a list, which has no status of its own, and none of `fraction`.
-Result contactOf(const RowReader& row, const Workload& workload, const std::string& file) {
-  const double hi = row.number(row.query.motion ? "fraction_hi" : "hi", 0);
-  const Status status = std::isnan(hi) ? Status::undecided : hi == 0 ? Status::overlap : Status::hit;
-  Result contact = resultOf(row, status, workload, file);
-  if (row.query.motion && status != Status::undecided) contact.t = contact.lo;
-  return contact;
+/// A contact in a list.
+Result contactOf(const RowReader& row, const Workload& workload) {
+  const double hi = row.number(*findAnswerField("hi"), 0);
+  return resultOf(row, workload, std::isnan(hi) ? Status::undecided : hi == 0 ? Status::overlap : Status::hit);
 }
 
 [[noreturn]] void refuseCount(const std::string& file, uint64_t expected, uint64_t got) {
@@ -90,15 +81,13 @@ std::vector<Answer> readLines(const std::string& file, std::string_view text, co
     if (const std::string id = root.member("id").string(); id != query.id) {
       throw InputError(file, place, "expected the answer to query \"" + query.id + "\", got that to \"" + id + "\"");
     }
-    const RowReader row = membersOf(root, place, query);
     Answer& answer = answers.emplace_back();
-    const JsonValue status = root.member("status");
-    answer.result = resultOf(row, status.guard([&] { return statusFrom(status.string()); }), workload, file);
+    answer.result = resultOf(membersOf(root, file, place, query), workload);
     root.ifHas("hits", [&](const JsonValue& list) {
       list.forEach([&](const JsonValue& hit) {
         hit.member("object").index(workload.objectCount(query.scene), "objects");
         const std::string at = place + ": hits[" + std::to_string(answer.listed.hits.size()) + "]";
-        answer.listed.hits.push_back(contactOf(membersOf(hit, at, query), workload, file));
+        answer.listed.hits.push_back(contactOf(membersOf(hit, file, at, query), workload));
       });
     });
     root.ifHas("overlapping", [&](const JsonValue& list) {
@@ -117,35 +106,54 @@ std::vector<Answer> readRecords(const std::string& file, const Workload& workloa
   const Columns columns(file);
   if (columns.rows() != workload.queries.size()) refuseCount(file, workload.queries.size(), columns.rows());
   std::vector<Answer> answers(columns.rows());
-  const auto column = [&](const char* name, size_t width) -> const Column& {
-    const Column* found = columns.find(name);
-    if (found && found->width() == width) return *found;
-    throw InputError(file, "", "expected records of cyber-radar query, with a column " + std::string(name));
-  };
   for (uint64_t i = 0; i < answers.size(); ++i) {
-    const std::string place = "record " + std::to_string(i);
-    const uint64_t code = column("status", 1).whole(i);
-    if (code > static_cast<uint64_t>(Status::invalid)) {
-      throw InputError(file, place + ": status", "expected a number from 0 to 4, got " + std::to_string(code));
-    }
-    const RowReader row{place, workload.queries[i], [&](const std::string& name, size_t part) {
-                          if (name == "gap" && !columns.find("gap")) return double{NAN};  // a file of older answers
-                          const Column& found = column(name.c_str(), name == "point" || name == "normal" ? 3 : 1);
-                          if (found.kind == 'f') return found.real(i, part);
-                          const uint64_t whole = found.whole(i);
-                          return whole == ~uint64_t{0} ? double{NAN} : static_cast<double>(whole);
-                        }};
-    answers[i].result = resultOf(row, static_cast<Status>(code), workload, file);
-    const bool isSampled = column("tier", 1).whole(i) <= static_cast<uint64_t>(Tier::sampled);
-    if (isSampled) answers[i].mode = AnswerMode::sampled;
+    const RowReader row{file, "record " + std::to_string(i), workload.queries[i],
+                        [&](const AnswerField& field, size_t part) { return memberIn(columns, i, field, part); }};
+    answers[i].result = resultOf(row, workload);
+    if (answers[i].result.tier <= Tier::sampled) answers[i].mode = AnswerMode::sampled;
   }
   return answers;
 }
 
 }  // namespace
 
+double memberIn(const JsonValue& object, const AnswerField& field, size_t part) {
+  if (!object.has(field.name) || object.member(field.name).json().is_null()) return NAN;
+  const JsonValue value = object.member(field.name);
+  if (field.isTruth()) return value.boolean();
+  if (!field.words.empty()) {
+    const double code = codeOf(field, value.string());
+    if (std::isnan(code)) value.expected(wordsOf(field));
+    return code;
+  }
+  if (field.width == 1) return value.number();
+  if (value.size() != field.width) value.expected("three numbers");
+  return value[part].json().is_null() ? NAN : value[part].number();  // too large for a double
+}
+
+double memberIn(const Columns& records, uint64_t row, const AnswerField& field, size_t part) {
+  const Column* const column = records.find(field.name);
+  if (!column || column->width() != field.width) {
+    throw InputError(records.name(), "",
+                     "expected records of cyber-radar query, with a column " + std::string(field.name));
+  }
+  if (field.isReal() != (column->kind == 'f')) {
+    throw InputError(records.name(), field.name,
+                     std::string("expected ") + (field.isReal() ? "floats" : "integers") + ", got " + column->type());
+  }
+  if (field.isReal()) return column->real(row, part);
+  const uint64_t whole = column->whole(row);
+  if (whole == ~uint64_t{0}) return NAN;
+  if (!field.words.empty() && whole >= field.words.size()) {
+    throw InputError(
+        records.name(), "record " + std::to_string(row) + ": " + field.name,
+        "expected a number from 0 to " + std::to_string(field.words.size() - 1) + ", got " + std::to_string(whole));
+  }
+  return static_cast<double>(whole);
+}
+
 std::vector<Answer> readAnswers(const std::filesystem::path& file, const Workload& workload) {
-  if (answerFormatOf(file) == AnswerFormat::records) return readRecords(file, workload);
+  if (readFormatOf(file) == AnswerFormat::records) return readRecords(file, workload);
   const MappedFile mapped(file, "an answer file");
   return readLines(file, mapped.bytes(), workload);
 }

@@ -5,6 +5,8 @@
 
 #include "batch/columns.h"
 #include "batch/json_output.h"
+#include "import/input_error.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -25,23 +27,64 @@ size_t stringLength(std::string_view text) {
   return 0;
 }
 
-constexpr size_t kStatusPlace = 152;  // in a record
+// The length of a table's first cell or row, up to what ends it, or npos.
+size_t untilEnd(std::string_view text, char end) {
+  bool isQuoted = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') isQuoted = !isQuoted;
+    if (text[i] == end && !isQuoted) return i;
+  }
+  return text.npos;
+}
+
+struct Format {
+  AnswerFormat format;
+  const char *name, *ending;
+};
+constexpr Format kFormats[] = {{AnswerFormat::lines, "lines", ""},
+                               {AnswerFormat::records, "records", ".npy"},
+                               {AnswerFormat::table, "table", ".csv"}};
 
 }  // namespace
 
 const char* nameOf(AnswerFormat format) {
-  return format == AnswerFormat::lines ? "lines" : "records";
+  return kFormats[static_cast<size_t>(format)].name;
 }
 
 AnswerFormat answerFormatFrom(std::string_view name) {
-  for (const AnswerFormat format : {AnswerFormat::lines, AnswerFormat::records}) {
-    if (name == nameOf(format)) return format;
+  for (const Format& format : kFormats) {
+    if (name == format.name) return format.format;
   }
-  throw std::invalid_argument("expected lines or records, got \"" + std::string(name) + "\"");
+  throw std::invalid_argument("expected lines, records or table, got \"" + std::string(name) + "\"");
 }
 
 AnswerFormat answerFormatOf(const std::filesystem::path& file) {
-  return file.extension() == ".npy" ? AnswerFormat::records : AnswerFormat::lines;
+  for (const Format& format : kFormats) {
+    if (*format.ending != 0 && file.extension() == format.ending) return format.format;
+  }
+  return AnswerFormat::lines;
+}
+
+AnswerFormat readFormatOf(const std::filesystem::path& file) {
+  const AnswerFormat format = answerFormatOf(file);
+  if (format != AnswerFormat::table) return format;
+  throw InputError(file.string(), "", "expected lines of JSON, or records in a file .npy, got a table");
+}
+
+const char* endingOf(AnswerFormat format) {
+  return kFormats[static_cast<size_t>(format)].ending;
+}
+
+void requireRoomForLists(const std::filesystem::path& file, const std::optional<std::string>& query) {
+  const AnswerFormat format = answerFormatOf(file);
+  if (format == AnswerFormat::lines || !query) return;
+  std::string options;
+  for (const QueryField& field : queryFields()) {
+    if (field.lists) options.append(options.empty() ? "\"" : "\" or \"").append(field.name);
+  }
+  throw InputError("--out", file.string(),
+                   std::string("expected another file than ") + endingOf(format) + ", as answers with " + options +
+                       "\" have lists (query \"" + *query + "\")");
 }
 
 std::string AnswerRows::text(uint64_t first, std::span<const QuerySpec> queries, std::span<const Answer> answers) {
@@ -54,22 +97,29 @@ std::string AnswerRows::text(uint64_t first, std::span<const QuerySpec> queries,
     const uint32_t scene = queries[i].scene;
     auto names = names_.find(scene);
     if (names == names_.end()) names = names_.emplace(scene, world_.objectNames(scene)).first;
-    rows += answerLine(queries[i], answers[i], names->second) + "\n";
+    if (format_ == AnswerFormat::table) {
+      rows += tableRow(queries[i], answers[i], names->second);
+    } else {
+      rows += answerLine(queries[i], answers[i], names->second) + "\n";
+    }
   }
   return rows;
 }
 
 std::string startOf(AnswerFormat format, uint64_t queries) {
+  if (format == AnswerFormat::table) return tableHead();
   return format == AnswerFormat::lines ? "" : npyHeader(recordDescription(), queries, kRecordsStart);
 }
 
 size_t rowLength(AnswerFormat format, std::string_view rows) {
-  if (format == AnswerFormat::records) return rows.size() < kRecordLength ? 0 : kRecordLength;
-  return rows.find('\n') + 1;  // npos + 1 is 0
+  if (format == AnswerFormat::records) return rows.size() < fileLayout().size ? 0 : fileLayout().size;
+  return (format == AnswerFormat::table ? untilEnd(rows, '\n') : rows.find('\n')) + 1;  // npos + 1 is 0
 }
 
 bool isRow(AnswerFormat format, std::string_view row, uint64_t index, const QuerySpec* query) {
   if (format == AnswerFormat::records) return std::memcmp(row.data(), &index, sizeof index) == 0;
+  if (format == AnswerFormat::table)
+    return query ? row.starts_with(cell(query->id) + ",") : untilEnd(row, ',') < row.size();
   if (!row.starts_with(kLineStart) || !row.ends_with("}\n")) return false;
   row.remove_prefix(kLineStart.size());
   return query ? row.starts_with(quoted(query->id) + ", ") : stringLength(row) > 0;
@@ -77,20 +127,20 @@ bool isRow(AnswerFormat format, std::string_view row, uint64_t index, const Quer
 
 std::optional<Status> statusOfRow(AnswerFormat format, std::string_view row) {
   constexpr std::string_view kBefore = ", \"status\": \"";
+  const AnswerField& field = *findAnswerField("status");
   if (format == AnswerFormat::lines) {
     row.remove_prefix(kLineStart.size());
     row.remove_prefix(stringLength(row));
     if (!row.starts_with(kBefore)) return std::nullopt;
     row.remove_prefix(kBefore.size());
+    row = row.substr(0, row.find('"'));
+  } else if (format == AnswerFormat::table) {
+    row.remove_prefix(std::min(row.size(), untilEnd(row, ',') + 1));
+    row = row.substr(0, row.find(','));
   }
-  for (uint8_t code = 0; code <= static_cast<uint8_t>(Status::invalid); ++code) {
-    const auto status = static_cast<Status>(code);
-    if (format == AnswerFormat::records ? static_cast<uint8_t>(row[kStatusPlace]) == code
-                                        : row.starts_with(nameOf(status) + std::string("\""))) {
-      return status;
-    }
-  }
-  return std::nullopt;
+  const double code = format == AnswerFormat::records ? row[field.place] : codeOf(field, row);
+  if (!(code >= 0 && code < static_cast<double>(field.words.size()))) return std::nullopt;
+  return static_cast<Status>(static_cast<uint32_t>(code));
 }
 
 }  // namespace radar::tools

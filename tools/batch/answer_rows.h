@@ -1,4 +1,4 @@
-// Answers as the rows of a file: lines of JSON, or records of one size.
+// Answers as the rows of a file: lines of JSON, of a table, or records of one size.
 #pragma once
 
 #include <filesystem>
@@ -14,14 +14,22 @@
 namespace radar::tools {
 
 enum class AnswerFormat {
-  lines,   ///< JSON Lines
-  records  ///< in an .npy file
+  lines,    ///< JSON Lines
+  records,  ///< in an .npy file
+  table     ///< comma-separated values in a .csv file
 };
 const char* nameOf(AnswerFormat format);
 /// Throws std::invalid_argument that lists the names.
 AnswerFormat answerFormatFrom(std::string_view name);
 /// What an answer file with this name is written in.
 AnswerFormat answerFormatOf(const std::filesystem::path& file);
+/// The same of one to be read. Throws InputError if it is a table, which only other programs read.
+AnswerFormat readFormatOf(const std::filesystem::path& file);
+/// How its name ends; of lines, in any other way.
+const char* endingOf(AnswerFormat format);
+/// Throws InputError if a file of that format cannot hold the lists that a query asks for; `query`: its id, if one
+/// does.
+void requireRoomForLists(const std::filesystem::path& file, const std::optional<std::string>& query);
 
 /// Makes the rows of one workload's answers. A row depends on its query and its answer alone.
 class AnswerRows {
@@ -37,7 +45,8 @@ class AnswerRows {
   std::map<uint32_t, std::vector<std::string>> names_;  ///< of the objects of the scenes met so far
 };
 
-/// What stands before the rows of all answers: nothing before lines, kRecordsStart bytes before records.
+/// What stands before the rows of all answers: nothing before lines, a head before a table's, kRecordsStart bytes
+/// before records.
 inline constexpr size_t kRecordsStart = 2048;
 std::string startOf(AnswerFormat format, uint64_t queries);
 /// The length of the first row of `rows`, its end included; 0 if it is cut off.

@@ -109,9 +109,9 @@ std::string Column::type() const {
   return text + (shape.empty() ? "" : shape.size() == 1 ? ",)" : ")");
 }
 
-Columns::Columns(const std::filesystem::path& file) : mapped_(file, "an .npy file") {
+Columns::Columns(const std::filesystem::path& file) : name_(file.string()), mapped_(file, "an .npy file") {
   const auto refuse = [&](const std::string& column, const std::string& problem) {
-    throw InputError(file.string(), column, problem);
+    throw InputError(name_, column, problem);
   };
   const auto& [header, rows] = split(mapped_.bytes());
   if (header.empty()) refuse("", "expected an array in numpy's format .npy");

@@ -44,6 +44,8 @@ class Columns {
   /// Throws InputError that names file and column.
   explicit Columns(const std::filesystem::path& file);
 
+  /// The file's.
+  const std::string& name() const { return name_; }
   uint64_t rows() const { return rows_; }
   const std::vector<Column>& all() const { return all_; }
   /// Null where there is none.
@@ -52,6 +54,7 @@ class Columns {
   std::string_view bytes() const { return mapped_.bytes(); }
 
  private:
+  std::string name_;
   MappedFile mapped_;
   uint64_t rows_ = 0;
   std::vector<Column> all_;

@@ -102,10 +102,10 @@ bool mergeShards(const std::vector<std::string>& files, const std::filesystem::p
   requireAll(pieces, out);
   const Part& one = pieces.begin()->second.part;
   if (!isStream(out) && answerFormatOf(out) != one.format) {
+    const std::string ending = endingOf(one.format);
     throw InputError(out.string(), "",
-                     one.format == AnswerFormat::lines
-                         ? "expected another file than .npy, as the shards are lines of JSON"
-                         : "expected a file .npy, as the shards are records");
+                     ending.empty() ? "expected another file than .npy or .csv, as the shards are lines of JSON"
+                                    : "expected a file " + ending + ", as the shards are");
   }
   bool someInvalid = false;
   AtomicFile whole(out);

@@ -277,8 +277,8 @@ void addQueryCommand(Program& program) {
 }
 
 void addFieldsCommand(Program& program) {
-  program.add("fields", "Prints what a query may ask for, as a table in Markdown").run([] {
-    std::cout << queryFieldTable();
+  program.add("fields", "Prints what a query may ask for, and what an answer says, as tables in Markdown").run([] {
+    std::cout << queryFieldTable() << "\n" << answerFieldTable();
     return 0;
   });
 }

@@ -16,7 +16,8 @@ Option RunOptions::addTo(Command& command, const std::string& about) {
   const Option answers =
       command
           .option("--out", &out,
-                  "Where the answers go: lines of JSON, or to a file .npy records for numpy; else to standard output")
+                  "Where the answers go: lines of JSON; to a file .npy, records for numpy; to a file .csv, a table; else "
+                  "to standard output")
           .value("FILE");
   command
       .option("--shard", &shard,
@@ -45,11 +46,7 @@ Outputs RunOptions::outputs() const {
 }
 
 void RunOptions::checkFormat(const QueryFile& queries) const {
-  if (answerFormatOf(out) != AnswerFormat::records || !queries.modes().listed) return;
-  throw InputError("--out", out,
-                   "expected another file than .npy, as answers with \"hits\" or \"skip_overlapping\" have lists "
-                   "(query \"" +
-                       *queries.modes().listed + "\")");
+  requireRoomForLists(out, queries.modes().listed);
 }
 
 Part RunOptions::part(const QueryFile& queries, Answering& answering) const {

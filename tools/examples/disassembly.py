@@ -74,7 +74,7 @@ def blocking_graph(scene: cyber_radar.Scene, directions: np.ndarray, mode: str) 
     crossing = np.zeros((len(directions) * count, count), bool)
     crossing[casts.overlapping.cast, casts.overlapping.object] = True
     crossing = crossing.reshape(blocked.shape).any(axis=0)
-    return Graph(directions, blocked, casts.distance, crossing | crossing.T)
+    return Graph(directions, blocked, casts.t, crossing | crossing.T)
 
 
 def removal_order(graph: Graph) -> tuple[list[Step], list[list[int]]]:

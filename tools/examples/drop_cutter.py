@@ -81,7 +81,7 @@ class Machine:
         starts = np.concatenate([points, np.full_like(points[..., :1], self.raster.top)], axis=-1)
         way = [0, 0, self.raster.floor - self.raster.top]
         casts = self.scene.cast(mesh, tool_path.poses_at(starts), way, mode=mode, resolution=resolution)
-        return casts, np.where(casts.touches, self.raster.top - casts.distance, self.raster.floor)
+        return casts, np.where(casts.touches, self.raster.top - casts.t, self.raster.floor)
 
     def path(self, tool: Mesh, heights: np.ndarray, above: float) -> tuple[np.ndarray, dict]:
         """Rows to and fro over the raster, `above` these heights, with the points that it takes for no move to touch the

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "radar/scene.h"
+#include "workloads/answer_fields.h"
 
 namespace radar::python {
 
@@ -43,6 +44,41 @@ inline void requireCount(const py::array& array, const char* name, size_t count)
   if (static_cast<size_t>(array.size()) == count) return;
   throw py::value_error(std::string(name) + ": expected " + std::to_string(count) + " numbers, got " +
                         std::to_string(array.size()));
+}
+
+/// `count` numbers of a dictionary's array.
+template <class T>
+const T* numbers(const py::dict& arrays, const char* name, size_t count) {
+  const py::object array = arrays[name];
+  if (!py::isinstance<Array<T>>(array)) throw py::value_error(std::string(name) + ": expected another array");
+  const auto typed = py::reinterpret_borrow<Array<T>>(array);
+  requireCount(typed, name, count);
+  return typed.data();
+}
+
+/// numpy's type of the records.
+inline py::object typeOf(const tools::AnswerLayout& layout) {
+  py::list names, formats, offsets;
+  for (const auto& [field, place] : layout.members) {
+    names.append(field->name);
+    formats.append(field->width == 1 ? py::object(py::str(field->type)) : py::make_tuple(field->type, field->width));
+    offsets.append(place);
+  }
+  py::dict type;
+  type["names"] = names;
+  type["formats"] = formats;
+  type["offsets"] = offsets;
+  type["itemsize"] = layout.size;
+  return py::module_::import("numpy").attr("dtype")(type);
+}
+
+/// `count` adjacent records.
+inline const char* recordsOf(const py::array& array, const tools::AnswerLayout& layout, size_t count) {
+  requireCount(array, "records", count);
+  if (!array.dtype().equal(typeOf(layout)) || (array.flags() & py::array::c_style) == 0) {
+    throw py::value_error("records: expected another array");
+  }
+  return static_cast<const char*>(array.data());
 }
 
 /// Works while other Python threads run, which may write to arrays: it must have copied what it reads of them.

@@ -8,6 +8,9 @@
 
 #include "answer/chunk_size.h"
 #include "python/errands.h"
+#include "radar/displacement.h"
+#include "workloads/answer_fields.h"
+#include "workloads/query_fields.h"
 
 namespace radar::python {
 
@@ -28,47 +31,16 @@ void inParts(size_t count, const Work& work) {
   work(0, count / parts);
 }
 
-int64_t idOf(uint32_t id) {
-  return id == kNone ? -1 : int64_t(id);
-}
-
-// Displacements of steps are no longer.
-constexpr double kMostWay = 0x1p1000;
-
-double lengthOf(const std::array<double, 3>& way) {
-  return std::hypot(std::hypot(way[0], way[1]), way[2]);
-}
-
-// Contact at the very end of a displacement counts, and none beyond it. Lengths round, so most queries are steps, whose
-// end is exact. Sweeps are those along an axis, where the length is a component and distances round only once; and
-// those that may round the length up: mode sampled, which has no steps, and a clearance where nothing moves, for which
-// the device has none. Both bracket the distance more widely than that.
-void setWay(Query& query, const std::array<double, 3>& way, AnswerMode mode, bool mayRoundUp) {
-  const double length = lengthOf(way);
-  const bool isAlongAxis = (way[0] == 0) + (way[1] == 0) + (way[2] == 0) == 2;
-  query.motion.reset();
-  if (mode == AnswerMode::sampled && length == 0) {
-    query.direction = {0, 0, 1};  // no direction changes whether the surfaces meet at the start
-    query.distance = 0;
-  } else if (isAlongAxis && length <= kMostWay) {
-    for (int k = 0; k < 3; ++k) query.direction[k] = way[k] / length;
-    query.distance = length;
-  } else if (mode == AnswerMode::sampled || (mayRoundUp && length > 0 && length <= kMostWay)) {
-    query.direction = way;
-    query.distance = std::nextafter((1 + 0x1p-50) * length, std::numeric_limits<double>::infinity());
-  } else {
-    query.motion = way;
-    query.direction = {};
-    query.distance = 0;
-  }
+Mode modeOf(AnswerMode mode) {
+  return mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
 }
 
 /// Goes through the queries in row-major order.
 class Reader {
  public:
-  /// Begins with query `first`. `mayRoundUp`: see setWay; of queries with a clearance.
-  Reader(const BasedScene& scene, const BatchInput& input, size_t first, bool mayRoundUp)
-      : scene_(scene), input_(input), mayRoundUp_(mayRoundUp), index_(input.shape.size()) {
+  /// Begins with query `first`. `objectsMove`: some of the scene.
+  Reader(const BasedScene& scene, const BatchInput& input, size_t first, bool objectsMove)
+      : scene_(scene), input_(input), objectsMove_(objectsMove), index_(input.shape.size()) {
     for (size_t d = index_.size(); d-- > 0; first /= input.shape[d]) {
       index_[d] = static_cast<ptrdiff_t>(first % input.shape[d]);
     }
@@ -94,7 +66,7 @@ class Reader {
 
   const BasedScene& scene_;
   const BatchInput& input_;
-  bool mayRoundUp_;
+  bool objectsMove_;
   std::vector<ptrdiff_t> index_;
   std::vector<int64_t> excluded_;
 };
@@ -127,7 +99,7 @@ void Reader::next(Query& query) {
     query.direction = way;
     read(input_.distances, &query.distance, 1);
   } else {
-    setWay(query, way, input_.mode, mayRoundUp_ && query.clearance > 0);
+    setDisplacement(query, way, modeOf(input_.mode), objectsMove_);
   }
   excluded_.resize(input_.excludedCount);
   read(input_.excluded, excluded_.data(), excluded_.size());
@@ -140,7 +112,7 @@ void Reader::next(Query& query) {
 
 /// A query's broken contract in the words of the arguments; empty if it is kept.
 std::string wrongWith(const Query& query, const Scene& scene, AnswerMode mode) {
-  std::string wrong = validate(query, scene, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact);
+  std::string wrong = validate(query, scene, modeOf(mode));
   for (const auto& [engine, argument] :
        {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
         std::pair{"motion: ", "displacements: "}, std::pair{"distance: ", "distances: "}}) {
@@ -199,31 +171,13 @@ Answers answerUnless(const std::function<void()>& look, CastingScene& scene, con
   return answers;
 }
 
-/// The times of a step are fractions of its displacement, whose length rounds, as products do; the floor is what a
-/// subnormal product loses.
-void toDistances(Result& result, double length) {
-  constexpr double kRoom = 0x1p-50, kFloor = std::numeric_limits<double>::denorm_min();
-  const auto scaled = [&](double time) { return time == 0 || std::isinf(time) ? time : time * length; };
-  const bool isLo = result.t == result.lo && result.lo < result.hi;
-  if (length == 0) result.hi = std::isinf(result.hi) ? result.hi : 0;
-  result.lo = std::max((1 - kRoom) * scaled(result.lo) - kFloor, 0.0);
-  result.t = isLo ? result.lo : scaled(result.t);
-  result.hi = result.hi == 0 ? 0 : (1 + kRoom) * scaled(result.hi) + kFloor;
-}
-
-void timesToDistances(const std::vector<Query>& queries, Answers& answers) {
-  for (size_t i = 0; i < queries.size(); ++i) {
-    if (!queries[i].motion) continue;
-    const double length = lengthOf(*queries[i].motion);
-    toDistances(answers.results[i], length);
-    if (answers.lists.empty()) continue;
-    for (Result& hit : answers.lists[i].hits) toDistances(hit, length);
+void append(BatchLists& to, const Listed& listed, const Query& query) {
+  const tools::AnswerLayout& layout = tools::castsLayout(false);
+  for (const Result& hit : listed.hits) {
+    to.hits.resize(to.hits.size() + layout.size);
+    layout.write({query, hit, AnswerMode::contact}, &to.hits[to.hits.size() - layout.size]);
   }
-}
-
-void append(BatchLists& to, const Listed& listed) {
-  to.hits.insert(to.hits.end(), listed.hits.begin(), listed.hits.end());
-  to.hitOffsets.push_back(static_cast<int64_t>(to.hits.size()));
+  to.hitOffsets.push_back(static_cast<int64_t>(to.hits.size() / layout.size));
   to.overlapping.insert(to.overlapping.end(), listed.overlapping.begin(), listed.overlapping.end());
   to.overlappingOffsets.push_back(static_cast<int64_t>(to.overlapping.size()));
 }
@@ -236,35 +190,12 @@ size_t BatchInput::count() const {
   return count;
 }
 
-void BatchOutput::write(size_t i, const Result& result) const {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
-  const bool met = result.status == Status::hit || result.status == Status::overlap;
-  const bool clear = result.status == Status::clear, undecided = result.status == Status::undecided;
-  const double none = clear ? kInfinity : kNaN;
-  distance[i] = met ? result.t : none;
-  fraction[i] = met ? result.fraction : none;
-  lo[i] = met || undecided ? result.lo : none;
-  hi[i] = met ? result.hi : undecided ? kInfinity : none;
-  status[i] = static_cast<uint8_t>(result.status);
-  tier[i] = static_cast<uint8_t>(result.tier);
-  detected[i] = static_cast<int8_t>(result.detected == Detected::notLooked ? -1 : result.detected == Detected::yes);
-  object[i] = idOf(result.object);
-  triangles[2 * i] = idOf(result.triA);
-  triangles[2 * i + 1] = idOf(result.triB);
-  features[2 * i] = static_cast<uint8_t>(result.featureA);
-  features[2 * i + 1] = static_cast<uint8_t>(result.featureB);
-  std::copy(result.point.begin(), result.point.end(), point + 3 * i);
-  std::copy(result.normal.begin(), result.normal.end(), normal + 3 * i);
-  gap[i] = result.gap;
-  if (paperMinL) paperMinL[i] = result.paperMinL;
-  if (resolution) resolution[i] = result.resolution;
-}
-
-BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
-                const std::function<void()>& look, const std::function<void(size_t)>& afterChunk) {
+BatchLists cast(CastingScene& scene, const BatchInput& input, char* records, const std::function<void()>& look,
+                const std::function<void(size_t)>& afterChunk) {
   BatchLists lists;
-  const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
-  const bool mayRoundUp = !scene.moves();
+  const bool listing = hasLists(input.options);
+  const bool objectsMove = scene.moves();
+  const tools::AnswerLayout& layout = tools::castsLayout(input.mode == AnswerMode::sampled);
   const size_t count = input.count();
   std::vector<Query> queries;
   // Between two chunks progress is reported. The largest fits into a cache.
@@ -274,17 +205,18 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
     const size_t end = std::min(first + chunk.next, count);
     queries.resize(end - first, input.options);
     inParts(end - first, [&](size_t from, size_t to) {
-      Reader reader(scene.based(), input, first + from, mayRoundUp);
+      Reader reader(scene.based(), input, first + from, objectsMove);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
     Answers answers = answerUnless(look, scene, queries, input.mode);
-    timesToDistances(queries, answers);
     inParts(end - first, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i]);
+      for (size_t i = from; i < to; ++i) {
+        layout.write({queries[i], answers.results[i], input.mode}, records + layout.size * (first + i));
+      }
     });
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
     if (listing) answers.lists.resize(queries.size());  // there are none if no query is valid
-    for (const Listed& listed : answers.lists) append(lists, listed);
+    for (size_t i = 0; i < answers.lists.size(); ++i) append(lists, answers.lists[i], queries[i]);
     chunk.answered(end - first, std::chrono::duration<double>(Clock::now() - start).count());
     first = end;
     afterChunk(first);

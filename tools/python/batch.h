@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -32,40 +31,25 @@ struct BatchInput {
   PerQuery slacks, tolerances;  ///< double, NaN for none
   PerQuery clearances;          ///< double
   PerQuery hits;                ///< uint32_t, 0 for all; if one is above 1, so is options.hits
-  Query options;                ///< for the members that all queries share
+  tools::QuerySpec options;     ///< for the members that all queries share
   tools::AnswerMode mode = tools::AnswerMode::contact;
 
   size_t count() const;
 };
 
-/// Where answers go: one number for each query, or as many as stated. Absent ids are -1, absent numbers NaN, except
-/// that a distance is infinite if there is none.
-struct BatchOutput {
-  double *distance = nullptr, *lo = nullptr, *hi = nullptr, *fraction = nullptr;
-  uint8_t *status = nullptr, *tier = nullptr;
-  int8_t* detected = nullptr;                       ///< 0, 1; -1: not looked
-  int64_t *object = nullptr, *triangles = nullptr;  ///< triangles: 2
-  uint8_t* features = nullptr;                      ///< 2
-  double *point = nullptr, *normal = nullptr;       ///< 3 each
-  double* gap = nullptr;
-  double* paperMinL = nullptr;     ///< null where not wanted
-  uint32_t* resolution = nullptr;  ///< null where not wanted
-
-  void write(size_t i, const Result& result) const;
-};
-
 /// What the answers of a batch list: nothing unless the queries ask for several hits or skip what overlaps.
 struct BatchLists {
-  /// Those of query i are entries hitOffsets[i] to hitOffsets[i + 1] of `hits`; likewise what overlaps.
-  std::vector<Result> hits;
+  /// Those of query i are entries hitOffsets[i] to hitOffsets[i + 1] of `hits`, records; likewise what overlaps.
+  std::string hits;
   std::vector<int64_t> hitOffsets{0}, overlapping, overlappingOffsets{0};
   std::map<std::string, std::vector<int64_t>> reasons;  ///< why queries are invalid, and which
 };
 
-/// Answers the batch in chunks. After each, `afterChunk` gets the number of queries answered. While this waits for one,
-/// `look`, if there is one, is called about every 50 ms: by one thread at a time of the process. What either throws
-/// ends the batch soon. A query that breaks its contract becomes Status::invalid.
-BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
-                const std::function<void()>& look, const std::function<void(size_t)>& afterChunk);
+/// Answers the batch in chunks, as records of castsLayout(): `records` has room for them. After each, `afterChunk` gets
+/// the number of queries answered. While this waits for one, `look`, if there is one, is called about every 50 ms: by
+/// one thread at a time of the process. What either throws ends the batch soon. A query that breaks its contract
+/// becomes Status::invalid.
+BatchLists cast(CastingScene& scene, const BatchInput& input, char* records, const std::function<void()>& look,
+                const std::function<void(size_t)>& afterChunk);
 
 }  // namespace radar::python

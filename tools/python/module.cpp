@@ -12,6 +12,7 @@
 #include "python/page.h"
 #include "python/scene_methods.h"
 #include "view/page.h"
+#include "workloads/answer_fields.h"
 #include "workloads/query_fields.h"
 
 namespace radar::python {
@@ -41,36 +42,6 @@ PerQuery perQuery(const py::array& array, const std::vector<size_t>& shape, size
   return result;
 }
 
-template <class T>
-T* output(const py::dict& arrays, const char* name, size_t count) {
-  if (!arrays.contains(name)) throw py::value_error(std::string("out: expected an array \"") + name + "\"");
-  const py::object array = arrays[name];
-  if (!py::isinstance<Array<T>>(array)) throw py::value_error(std::string("out: ") + name + ": another type");
-  auto typed = py::reinterpret_borrow<Array<T>>(array);
-  requireCount(typed, name, count);
-  return typed.mutable_data();
-}
-
-BatchOutput outputFrom(const py::dict& arrays, size_t count) {
-  BatchOutput to;
-  to.distance = output<double>(arrays, "distance", count);
-  to.lo = output<double>(arrays, "lo", count);
-  to.hi = output<double>(arrays, "hi", count);
-  to.fraction = output<double>(arrays, "fraction", count);
-  to.status = output<uint8_t>(arrays, "status", count);
-  to.tier = output<uint8_t>(arrays, "tier", count);
-  to.detected = output<int8_t>(arrays, "detected", count);
-  to.object = output<int64_t>(arrays, "object", count);
-  to.triangles = output<int64_t>(arrays, "triangles", 2 * count);
-  to.features = output<uint8_t>(arrays, "features", 2 * count);
-  to.point = output<double>(arrays, "point", 3 * count);
-  to.normal = output<double>(arrays, "normal", 3 * count);
-  to.gap = output<double>(arrays, "gap", count);
-  if (arrays.contains("paper_min_l")) to.paperMinL = output<double>(arrays, "paper_min_l", count);
-  if (arrays.contains("resolution")) to.resolution = output<uint32_t>(arrays, "resolution", count);
-  return to;
-}
-
 /// A field's value for all casts, as cast_option() gives it.
 void readField(const tools::QueryField& field, const py::object& value, tools::QuerySpec& to) {
   double number = std::nan("");
@@ -96,7 +67,7 @@ tools::AnswerMode modeFrom(const py::dict& options) {
   return mode == "reference" ? tools::AnswerMode::reference : tools::AnswerMode::contact;
 }
 
-Query optionsFrom(const py::dict& options) {
+tools::QuerySpec optionsFrom(const py::dict& options) {
   tools::QuerySpec query;
   for (const tools::QueryField& field : tools::queryFields()) {
     if (field.cast) readField(field, options[field.name], query);
@@ -112,15 +83,13 @@ Query optionsFrom(const py::dict& options) {
 }
 
 /// What _engine.pyi says of cast().
-py::tuple listsFor(const Query& options, BatchLists&& found, const py::function& makeArrays) {
+py::tuple listsFor(const Query& options, const BatchLists& found) {
   py::object hits = py::none(), overlapping = py::none();
   const auto whole = [](const std::vector<int64_t>& values) { return arrayOf(values, {py::ssize_t(values.size())}); };
   if (options.hits > 1) {
-    const size_t count = found.hits.size();
-    const py::dict arrays = makeArrays(count);
-    const BatchOutput to = outputFrom(arrays, count);
-    for (size_t i = 0; i < count; ++i) to.write(i, found.hits[i]);
-    hits = py::make_tuple(arrays, whole(found.hitOffsets));
+    const py::array records(py::dtype::from_args(typeOf(tools::castsLayout(false))), {found.hitOffsets.back()},
+                            found.hits.data());
+    hits = py::make_tuple(records, whole(found.hitOffsets));
   }
   if (options.skipOverlapping) {
     overlapping = py::make_tuple(whole(found.overlapping), whole(found.overlappingOffsets));
@@ -139,8 +108,7 @@ bool isMainThread() {
 }
 
 py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, const py::dict& arguments,
-                     const py::dict& options, const py::dict& out, const py::function& makeArrays,
-                     const py::object& afterChunk) {
+                     const py::dict& options, py::array& records, const py::object& afterChunk) {
   BatchInput input{.shape = shape};
   const auto argument = [&](const char* name) { return arguments[name].cast<py::array>(); };
   const py::array meshes = argument("mesh"), poses = argument("poses"), displacements = argument("displacements"),
@@ -167,7 +135,8 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   readEach("hits", input.hits, uint32_t{});
   input.options = optionsFrom(options);
   input.mode = modeFrom(options);
-  const BatchOutput output = outputFrom(out, input.count());
+  recordsOf(records, tools::castsLayout(input.mode == tools::AnswerMode::sampled), input.count());
+  auto* const to = static_cast<char*>(records.mutable_data());
   BatchLists found;
   std::function<void()> heedSignals;
   if (isMainThread()) {
@@ -178,39 +147,13 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   }
   {
     const py::gil_scoped_release release;
-    found = cast(scene, input, output, heedSignals, [&](size_t done) {
+    found = cast(scene, input, to, heedSignals, [&](size_t done) {
       const py::gil_scoped_acquire acquire;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (!afterChunk.is_none()) afterChunk(done);
     });
   }
-  return listsFor(input.options, std::move(found), makeArrays);
-}
-
-/// What _engine.pyi says of page().
-std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
-                      const std::string& title, uint64_t count, const std::vector<std::string>& names,
-                      const py::dict& arrays, const std::map<uint32_t, std::string>& reasons,
-                      const tools::LeftOut& left, const std::optional<std::pair<py::dict, Array<int64_t>>>& hits) {
-  const size_t shown = names.size();
-  ShownCasts casts{
-      .count = count, .names = names, .answers = outputFrom(arrays, shown), .reasons = reasons, .left = left};
-  casts.meshes = output<uint32_t>(arrays, "mesh", shown);
-  casts.poses = output<double>(arrays, "poses", 16 * shown);
-  casts.directions = output<double>(arrays, "displacements", 3 * shown);
-  casts.distances = output<double>(arrays, "distances", shown);
-  for (const tools::QueryField& field : tools::queryFields()) {
-    if (field.cast) casts.options.emplace_back(&field, output<double>(arrays, field.name, shown));
-  }
-  if (hits) {
-    requireCount(hits->second, "offsets", shown + 1);
-    casts.hitOffsets = hits->second.data();
-    casts.hits = outputFrom(hits->first, static_cast<size_t>(casts.hitOffsets[shown]));
-  }
-  const auto excluded = arrays["exclude_from_each"].cast<Array<int64_t>>();
-  casts.excludedCount = static_cast<size_t>(excluded.shape(1));
-  casts.excluded = excluded.data();
-  return pageOf(scene, objectNames, title, casts);
+  return listsFor(input.options, found);
 }
 
 // ------------------------------------------------------------------------------------------------- devices and files
@@ -297,6 +240,11 @@ PYBIND11_MODULE(_engine, module) {
     if (field.cast) options.append(field.name);
   }
   module.attr("OPTIONS") = options;
+  py::dict answers;
+  for (const radar::tools::AnswerField& field : radar::tools::answerFields()) answers[field.name] = field.about;
+  module.attr("ANSWERS") = answers;
+  module.attr("CASTS") = typeOf(radar::tools::castsLayout(false));
+  module.attr("SAMPLED_CASTS") = typeOf(radar::tools::castsLayout(true));
   module.attr("MAX_RESOLUTION") = radar::kMaxResolution;
   module.attr("MOST_SHOWN") = radar::tools::kMostShownQueries;
   py::class_<CastingScene> scene(module, "Scene");

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "view/page.h"
+#include "workloads/answer_fields.h"
+#include "workloads/query_fields.h"
 
 namespace radar::python {
 
@@ -37,57 +39,49 @@ Workload workloadOf(const Scene& scene, const std::map<uint32_t, std::string>& o
   return workload;
 }
 
-uint32_t idFrom(int64_t number) {
-  return number < 0 ? kNone : static_cast<uint32_t>(number);
-}
-
-Result resultOf(const BatchOutput& answers, size_t i) {
-  Result result(static_cast<Status>(answers.status[i]));
-  result.t = answers.distance[i];
-  result.lo = answers.lo[i];
-  result.hi = answers.hi[i];
-  result.object = idFrom(answers.object[i]);
-  result.triA = idFrom(answers.triangles[2 * i]);
-  result.triB = idFrom(answers.triangles[2 * i + 1]);
-  std::copy_n(answers.point + 3 * i, 3, result.point.begin());
-  std::copy_n(answers.normal + 3 * i, 3, result.normal.begin());
-  result.gap = answers.gap[i];
-  return result;
-}
-
 }  // namespace
 
-std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
-                   const std::string& title, const ShownCasts& casts) {
+std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
+                      const std::string& title, uint64_t count, const std::vector<std::string>& names,
+                      const py::dict& arrays, const py::array& records, const std::map<uint32_t, std::string>& reasons,
+                      const tools::LeftOut& left, const std::optional<std::pair<py::array, Array<int64_t>>>& hits) {
+  const size_t shown = names.size();
+  const auto* const meshes = numbers<uint32_t>(arrays, "mesh", shown);
+  const auto *const poses = numbers<double>(arrays, "poses", 16 * shown),
+                    *const directions = numbers<double>(arrays, "displacements", 3 * shown),
+                    *const distances = numbers<double>(arrays, "distances", shown);
+  const auto excluded = arrays["exclude_from_each"].cast<Array<int64_t>>();
+  const bool isSampled = static_cast<size_t>(records.itemsize()) == tools::castsLayout(true).size;
+  const tools::AnswerLayout &layout = tools::castsLayout(isSampled), &ofHits = tools::castsLayout(false);
+  const char* const answers = recordsOf(records, layout, shown);
+  const char* const listed =
+      hits ? recordsOf(hits->first, ofHits, static_cast<size_t>(hits->second.at(shown))) : nullptr;
+
   Workload workload = workloadOf(scene.scene(), objectNames);
   std::vector<Result> results;
-  tools::PageContent content;
-  for (size_t i = 0; i < casts.names.size(); ++i) {
+  tools::PageContent content{.title = title, .queries = count, .reasons = reasons, .left = left};
+  for (size_t i = 0; i < shown; ++i) {
     tools::QuerySpec& query = workload.queries.emplace_back();
-    query.id = casts.names[i];
-    query.mesh = casts.meshes[i];
-    std::copy_n(casts.poses + 16 * i, 12, query.worldFromMesh.m.begin());
-    query.worldFromMesh = scene.based().placed(query.mesh, query.worldFromMesh);
-    std::copy_n(casts.directions + 3 * i, 3, query.direction.begin());
-    query.distance = casts.distances[i];
-    for (const auto& [field, values] : casts.options) {
-      const bool isWord = field->word != nullptr && values[i] == 0;
-      tools::setValue(query, *field, isWord ? std::numeric_limits<double>::infinity() : values[i]);
+    query.id = names[i];
+    query.mesh = meshes[i];
+    query.worldFromMesh = scene.based().placed(query.mesh, transformFrom(poses + 16 * i));
+    std::copy_n(directions + 3 * i, 3, query.direction.begin());
+    query.distance = distances[i];
+    for (const tools::QueryField& field : tools::queryFields()) {
+      if (!field.cast) continue;
+      const double value = numbers<double>(arrays, field.name, shown)[i];
+      tools::setValue(query, field, field.word && value == 0 ? std::numeric_limits<double>::infinity() : value);
     }
-    for (size_t k = 0; k < casts.excludedCount; ++k) {
-      const int64_t object = casts.excluded[casts.excludedCount * i + k];
-      if (object >= 0) query.exclude.push_back(idFrom(object));
+    for (py::ssize_t k = 0; k < excluded.shape(1); ++k) {
+      if (const int64_t object = excluded.at(i, k); object >= 0) query.exclude.push_back(static_cast<ObjectId>(object));
     }
-    results.push_back(resultOf(casts.answers, i));
-    if (casts.hitOffsets == nullptr) continue;
-    for (int64_t k = casts.hitOffsets[i]; k < casts.hitOffsets[i + 1]; ++k) {
-      content.hits[static_cast<uint32_t>(i)].push_back(resultOf(casts.hits, static_cast<size_t>(k)));
+    results.push_back(layout.read(answers + layout.size * i));
+    if (!hits) continue;
+    const Array<int64_t>& offsets = hits->second;
+    for (auto k = static_cast<size_t>(offsets.at(i)); k < static_cast<size_t>(offsets.at(i + 1)); ++k) {
+      content.hits[static_cast<uint32_t>(i)].push_back(ofHits.read(listed + ofHits.size * k));
     }
   }
-  content.title = title;
-  content.queries = casts.count;
-  content.reasons = casts.reasons;
-  content.left = casts.left;
   return tools::pageOf(workload, results, content);
 }
 

@@ -13,7 +13,7 @@ import { lengthOf, plus, times } from "./vectors.js";
  *   step: Uint8Array, ignored: Record<number, number[]>,
  *   asked: Record<number, Record<string, number | string | boolean>>}} Queries  way: 3; asked: options given
  * @typedef {{status: Uint8Array, t: Float64Array, lo: Float64Array, hi: Float64Array, object: Uint32Array,
- *   triA: Uint32Array, triB: Uint32Array, point: Float64Array, normal: Float64Array, gap: Float64Array}} Answers
+ *   tri_a: Uint32Array, tri_b: Uint32Array, point: Float64Array, normal: Float64Array, gap: Float64Array}} Answers
  *   point, normal: 3
  * @typedef {{width: number, height: number, pixel: number, d: number, length: number, R: Float32Array, M: Float32Array,
  *   L: Float32Array, origin: number[], right: number[], up: number[], forward: number[]}} Scopes
@@ -66,8 +66,8 @@ export class Answer {
     this.lo = from.lo[i];
     this.hi = from.hi[i];
     this.object = from.object[i];
-    this.triA = from.triA[i];
-    this.triB = from.triB[i];
+    this.triA = from.tri_a[i];
+    this.triB = from.tri_b[i];
     this.point = [...from.point.subarray(3 * i, 3 * i + 3)];
     this.normal = [...from.normal.subarray(3 * i, 3 * i + 3)];
     this.hasPoint = this.point.every(Number.isFinite);

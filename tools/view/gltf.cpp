@@ -13,7 +13,8 @@
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #include <tiny_gltf.h>
 
-#include "view/course.h"
+#include "radar/displacement.h"
+#include "workloads/answer_fields.h"
 #include "workloads/vectors.h"
 
 namespace radar::tools {
@@ -31,6 +32,15 @@ bool isSheared(const Transform& pose) {
     if (std::abs(dot(a, b)) > 1e-6 * lengthOf(a) * lengthOf(b)) return true;
   }
   return false;
+}
+
+/// The part of the way that a sensor can go, 0 to 1; of a hit that only says whether (Query::anyHit), 0.
+double shareOf(const Query& query, const Result& answer) {
+  if (answer.status == Status::clear) return 1;
+  if (query.anyHit && answer.status == Status::hit) return 0;
+  const double whole = query.motion ? 1 : query.distance;
+  const double time = answer.status == Status::hit ? answer.t : answer.status == Status::undecided ? answer.lo : 0;
+  return time > 0 && whole > 0 ? std::min(time / whole, 1.0) : 0;
 }
 
 class Writer {
@@ -239,12 +249,11 @@ class Writer {
   int addSensor(size_t i, tinygltf::Animation& animation) {
     const QuerySpec& query = workload_.queries[i];
     const Result& answer = answers_[i];
-    const Course course(query);
     const auto left = left_.find(static_cast<uint32_t>(i));
     const bool isPart = answer.status == Status::clear && left != left_.end();
     const size_t material = isPart ? model_.materials.size() - 1 : 1 + static_cast<size_t>(answer.status);
     const int body = addPlaced(query.id, query.scene, query.sensor(), material);
-    const int node = addMoving("sensor " + query.id, body, course.way, course.share(answer), animation);
+    const int node = addMoving("sensor " + query.id, body, displacementOf(query), shareOf(query, answer), animation);
     tinygltf::Value::Object extras{{"status", tinygltf::Value(model_.materials[material].name)}};
     const auto add = [&](const char* name, double value) {
       if (std::isfinite(value)) extras.insert({name, tinygltf::Value(value)});

@@ -6,9 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "view/course.h"
+#include "radar/displacement.h"
 #include "view/cut.h"
 #include "view/page_text.h"
+#include "workloads/answer_fields.h"
 #include "workloads/query_fields.h"
 #include "workloads/shapes.h"
 
@@ -158,13 +159,13 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   std::vector<double> ways, wholes;
   std::vector<uint8_t> steps;
   for (const QuerySpec& query : queries) {
-    const Course course(query);
+    const std::array<double, 3> way = displacementOf(query);
     const std::string number = std::to_string(scenes.size());
     poses.add(query.mesh, query.worldFromMesh);
     ids.push_back(query.id);
     scenes.push_back(query.scene);
-    ways.insert(ways.end(), course.way.begin(), course.way.end());
-    wholes.push_back(course.whole);
+    ways.insert(ways.end(), way.begin(), way.end());
+    wholes.push_back(query.motion ? 1 : query.distance);
     steps.push_back(query.motion.has_value());
     const std::vector<uint32_t> left = ignoredBy(query, workload.scenes[query.scene]);
     if (!left.empty()) ignored[number] = left;
@@ -183,25 +184,28 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   return json;
 }
 
+/// By member. Of a step, times are fractions.
 Json answersJson(std::span<const Result> answers) {
-  std::vector<uint8_t> status;
-  std::vector<uint32_t> object, triA, triB;
-  std::vector<double> t, lo, hi, point, normal, gap;
-  for (const Result& answer : answers) {
-    status.push_back(static_cast<uint8_t>(answer.status));
-    t.push_back(answer.t);
-    lo.push_back(answer.lo);
-    hi.push_back(answer.hi);
-    object.push_back(answer.object);
-    triA.push_back(answer.triA);
-    triB.push_back(answer.triB);
-    point.insert(point.end(), answer.point.begin(), answer.point.end());
-    normal.insert(normal.end(), answer.normal.begin(), answer.normal.end());
-    gap.push_back(answer.gap);
+  const Query unasked;
+  Json json = Json::object();
+  for (const AnswerField& field : answerFields()) {
+    if (!field.page) continue;
+    std::vector<double> values;
+    for (const Result& answer : answers) {
+      const AnswerRow row(unasked, answer, AnswerMode::contact);
+      for (size_t part = 0; part < field.width; ++part) values.push_back(field.value(row, part));
+    }
+    if (field.isReal()) {
+      json[field.name] = array(values);
+    } else if (!field.words.empty()) {
+      json[field.name] = array(std::vector<uint8_t>(values.begin(), values.end()));
+    } else {
+      std::vector<uint32_t> ids;
+      for (const double value : values) ids.push_back(std::isnan(value) ? kNone : static_cast<uint32_t>(value));
+      json[field.name] = array(ids);
+    }
   }
-  return {{"status", array(status)}, {"t", array(t)},       {"lo", array(lo)},     {"hi", array(hi)},
-          {"object", array(object)}, {"triA", array(triA)}, {"triB", array(triB)}, {"point", array(point)},
-          {"normal", array(normal)}, {"gap", array(gap)}};
+  return json;
 }
 
 /// The contacts in lists, one after the other; "first": where those of each query begin, and at last their number.
@@ -249,9 +253,7 @@ std::string pageOf(const Workload& workload, std::span<const Result> answers, co
   const auto asItIs = [](const std::string& text) { return text; };
   Json json;
   json["title"] = content.title;
-#define RADAR_CODE(name, value) #name,
-  json["statuses"] = {RADAR_STATUSES(RADAR_CODE)};
-#undef RADAR_CODE
+  json["statuses"] = findAnswerField("status")->words;
   json["none"] = kNone;
   json["meshes"] = Json::array();
   for (size_t i = 0; i < workload.meshes.size(); ++i) {

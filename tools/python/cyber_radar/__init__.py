@@ -6,9 +6,9 @@
     mesh = scene.add_mesh(vertices, faces)             # (N, 3), (M, 3); or scene.load_mesh("part.stl")
     scene.add(mesh, transforms)                        # (..., 4, 4) or (..., 3, 4): what stands still
     casts = scene.cast(mesh, poses, displacements)     # (..., 4, 4), (..., 3): what moves, from where, how far
-    casts.distance, casts.object, casts.point          # (...), (...), (..., 3)
+    casts.t, casts.object, casts.point                 # (...), (...), (..., 3)
 
-Distances are exact to rounding; free ones are inf. Shapes broadcast: poses of shape (100, 1, 4, 4) and displacements
+`t` is how far it can go: exact to rounding, and inf if the way is free. Shapes broadcast: poses of shape (100, 1, 4, 4) and displacements
 of shape (6, 3) make 600 casts, and arrays of shape (100, 6).
 
 help(cyber_radar.Scene) says what a scene holds, help(cyber_radar.Scene.cast) what may be asked, help(cyber_radar.Casts)

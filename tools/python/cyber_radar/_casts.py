@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._show import Asked, in_notebook, open_in_browser, page_of, write
+from . import _engine
+from ._asked import MOST_REMEMBERED, Asked, first
+from ._show import in_notebook, open_in_browser, write
 
 
 class Status(enum.IntEnum):
@@ -36,7 +38,7 @@ class Tier(enum.IntEnum):
 
 
 class Feature(enum.IntEnum):
-    """A part of a triangle: the values of Casts.features. Each is the number of its corners."""
+    """A part of a triangle: the values of Casts.feature_a and feature_b. Each is the number of its corners."""
 
     NONE = 0
     VERTEX = 1
@@ -44,73 +46,22 @@ class Feature(enum.IntEnum):
     FACE = 3
 
 
-# Of each array: dtype, and the length of its last dimension if it has one beside the leading shape.
-_FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
-    "distance": (np.float64, ()),
-    "lo": (np.float64, ()),
-    "hi": (np.float64, ()),
-    "fraction": (np.float64, ()),
-    "status": (np.uint8, ()),
-    "tier": (np.uint8, ()),
-    "detected": (np.int8, ()),
-    "object": (np.int64, ()),
-    "triangles": (np.int64, (2,)),
-    "features": (np.uint8, (2,)),
-    "point": (np.float64, (3,)),
-    "normal": (np.float64, (3,)),
-    "gap": (np.float64, ()),
-}
-_SAMPLED_FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
-    "paper_min_l": (np.float64, ()),
-    "resolution": (np.uint32, ()),
-}
-
-
 _MOST_NAMED = 5  # objects in a line
 
 
 @dataclasses.dataclass(eq=False, repr=False)
 class Casts:
-    """Answers as arrays, each of the casts' leading shape (...).
-
-    Distances are in world units along the displacement. A number that an answer does not have is NaN, an id -1; a
-    distance is infinite if there is no contact. 117 bytes a cast, and 12 more in mode "sampled".
+    """Answers, as views into `records`, an array of numpy's of the casts' leading shape (...). What is null in the words
+    below is NaN, and -1 of ids; but t, lo, hi and fraction are inf where there certainly is no contact, and hi where
+    none is certain. Lengths are along the displacement (D), in world units. 120 bytes a cast, 136 in mode "sampled".
 
     An index into the leading shape gives the casts there, with all that they list, as numpy's index would: casts[3],
     casts[:, 0], casts[casts.touches]. len() and iteration go through the first dimension.
+
     """
 
-    distance: npt.NDArray[np.float64]
-    """(...) to first contact: exact to rounding, but `hi` in mode "sampled" and with any_hit, which does not ask for it.
-    inf: free. NaN: undecided or invalid."""
-    lo: npt.NDArray[np.float64]
-    """(...) no contact before this."""
-    hi: npt.NDArray[np.float64]
-    """(...) a contact by then; inf: none is certain."""
-    fraction: npt.NDArray[np.float64]
-    """(...) distance / the whole way, 0 to 1."""
-    status: npt.NDArray[np.uint8]
-    """(...) values of Status."""
-    tier: npt.NDArray[np.uint8]
-    """(...) values of Tier."""
-    detected: npt.NDArray[np.int8]
-    """(...) whether any surface lies in the swept volume: 1, 0, or -1 if nobody looked."""
-    object: npt.NDArray[np.int64]
-    """(...) the object touched; among equal distances the least."""
-    triangles: npt.NDArray[np.int64]
-    """(..., 2) the triangles that touch: the moving mesh's, the object's."""
-    features: npt.NDArray[np.uint8]
-    """(..., 2) values of Feature: which parts of the two triangles touch, the smallest that contain every point."""
-    point: npt.NDArray[np.float64]
-    """(..., 3) where they touch, in world units, at the moment of contact."""
-    normal: npt.NDArray[np.float64]
-    """(..., 3) of length 1, from the touched surface towards the moving one."""
-    gap: npt.NDArray[np.float64]
-    """(...) how far apart the surfaces are at `distance`: 0, or with a clearance up to that; at the start the least."""
-    paper_min_l: npt.NDArray[np.float64] | None = None
-    """(...) mode "sampled": the paper's literal min(L), for comparison; may be negative, too early or too late."""
-    resolution: npt.NDArray[np.uint32] | None = None
-    """(...) mode "sampled": pixels along the picture's longer side; 0 if none was drawn."""
+    records: npt.NDArray[Any]
+    """(...) a structured array, whose fields are the members above: numpy.save(file, casts.records)."""
     hits: Hits | None = None
     """With hits above 1: the first contact with each of the nearest objects; no rows of casts that ask for 1."""
     overlapping: Overlapping | None = None
@@ -122,12 +73,21 @@ class Casts:
     @classmethod
     def empty(cls, shape: tuple[int, ...], mode: str = "contact") -> Casts:
         """Arrays for answers of this shape, to be filled by Scene.cast(out=...)."""
-        return cls(**_new_arrays(shape, mode == "sampled"))
+        return cls(np.empty(shape, record_type(mode)))
+
+    def __getattr__(self, name: str) -> npt.NDArray[Any]:
+        records = self.__dict__.get("records")
+        if records is None or name not in records.dtype.names:
+            raise AttributeError(f"{type(self).__name__} have no {name!r}")
+        return records[name]  # type: ignore[no-any-return]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.records.dtype.names]
 
     @property
     def shape(self) -> tuple[int, ...]:
         """The leading shape of all arrays."""
-        return self.distance.shape
+        return self.records.shape
 
     @property
     def sensor_point(self) -> npt.NDArray[np.float64]:
@@ -141,8 +101,7 @@ class Casts:
 
     def to_dict(self) -> dict[str, npt.NDArray[Any]]:
         """The arrays by name, without what is listed: numpy.savez(file, **casts.to_dict())."""
-        arrays = {name: getattr(self, name) for name in _FIELDS | _SAMPLED_FIELDS}
-        return {name: array for name, array in arrays.items() if array is not None}
+        return {name: self.records[name] for name in self.records.dtype.names}
 
     def show(self, file: str | os.PathLike[str] | None = None, *, title: str = "Casts") -> pathlib.Path:
         """A page for a browser, which shows the casts and their scene as it is now: one file that needs no network. Up
@@ -150,12 +109,31 @@ class Casts:
 
         file: where it goes; None: to a temporary file, which is opened in a browser. Returns where it is.
         """
-        page = page_of(self, self._asked, title)
+        page = self._page(title)
         return open_in_browser(page) if file is None else write(page, file)
 
     def _repr_html_(self) -> str | None:
         """The page in a cell of a notebook."""
-        return in_notebook(page_of(self, self._asked, "Casts"), repr(self)) if self._asked else None
+        return in_notebook(self._page("Casts"), repr(self)) if self._asked else None
+
+    def _page(self, title: str) -> str:
+        if self._asked is None:
+            raise ValueError(
+                "show: expected casts that Scene.cast() has answered, got some that were unpickled or made, or a part of "
+                f"more than {MOST_REMEMBERED:,}"
+            )
+        shown = min(self.records.size, _engine.MOST_SHOWN)
+        left_out: dict[int, list[int]] = {}
+        if self.overlapping is not None:
+            rows, offsets = self.overlapping.object.tolist(), self.overlapping.offsets.tolist()
+            left_out = {i: rows[offsets[i] : offsets[i + 1]] for i in range(shown) if offsets[i] < offsets[i + 1]}
+        reasons = {int(i): reason for reason, found in self.reasons.items() for i in found if i < shown}
+        hits = None
+        if self.hits is not None:
+            offsets = self.hits.offsets[: shown + 1]
+            hits = (self.hits.records[: offsets[-1]], offsets)
+        records = first(self.records, self.shape, shown)
+        return self._asked.page(title, self.records.size, records, reasons, left_out, hits)
 
     def __getstate__(self) -> dict[str, Any]:
         """Without the scene, of which show() knows."""
@@ -170,16 +148,19 @@ class Casts:
         return (self[i] for i in range(len(self)))
 
     def __getitem__(self, index: Any) -> Casts:
-        places = _leading(index, self.shape)
-        part = Casts(**{name: array[places] for name, array in self.to_dict().items()})
-        part._asked = self._asked[places] if self._asked else None
+        try:
+            chosen = np.arange(self.records.size).reshape(self.shape)[index]
+        except IndexError as error:
+            raise IndexError(f"casts of shape {self.shape}: {error}") from None
+        # A single cast is an array, too; of a part, what an index of numpy's would give: a view if it can.
+        part = Casts(self.records[index] if np.ndim(chosen) else self.records[np.unravel_index(chosen, self.shape) + (...,)])
+        part._asked = self._asked[index] if self._asked else None
         if self.hits is None and self.overlapping is None and not self.reasons:
             return part
-        chosen = np.arange(self.distance.size).reshape(self.shape)[places].ravel()
+        chosen = np.ravel(chosen)
         if self.hits is not None:
             rows, offsets = self.hits._rows_of(chosen)
-            arrays: dict[str, Any] = self.hits[rows].to_dict()
-            part.hits = Hits(**arrays, offsets=offsets, of_shape=part.shape)
+            part.hits = Hits(self.hits.records[rows], offsets=offsets, of_shape=part.shape)
         if self.overlapping is not None:
             rows, offsets = self.overlapping._rows_of(chosen)
             part.overlapping = Overlapping(self.overlapping.object[rows], offsets, part.shape)
@@ -198,7 +179,7 @@ class Casts:
         ids = [] if self.overlapping is None else np.unique(self.overlapping.object).tolist()
         if not ids:
             return ""
-        names = self._asked.scene.names if self._asked else {}
+        names = self._asked.object_names if self._asked else {}
         words = [f"{number} ({names[number]})" if number in names else str(number) for number in ids[:_MOST_NAMED]]
         more = f" and {len(ids) - _MOST_NAMED} more" if len(ids) > _MOST_NAMED else ""
         return f" of all but {len(ids)} object{'s' if len(ids) > 1 else ''} left out: {', '.join(words)}{more}"
@@ -238,7 +219,7 @@ class _Ragged:
 
 @dataclasses.dataclass(eq=False, repr=False)
 class Hits(Casts, _Ragged):
-    """First contacts with several objects, one row each, for each cast in the order of (distance, object). An index
+    """First contacts with several objects, one row each, for each cast in the order of (t, object). An index
     gives rows."""
 
     offsets: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.zeros(1, np.int64))
@@ -254,46 +235,22 @@ class Overlapping(_Ragged):
     of_shape: tuple[int, ...]
 
 
-def _leading(index: Any, shape: tuple[int, ...]) -> tuple[Any, ...]:
-    """An index into the leading shape as one into arrays that have more dimensions behind it."""
-    try:
-        np.broadcast_to(False, shape)[index]
-    except IndexError as error:
-        raise IndexError(f"casts of shape {shape}: {error}") from None
-    items = list(index) if isinstance(index, tuple) else [index]
-    where = [i for i, item in enumerate(items) if item is Ellipsis]
-    if where:
-        others = items[: where[0]] + items[where[0] + 1 :]
-        items[where[0] : where[0] + 1] = [slice(None)] * (len(shape) - sum(map(_dimensions, others)))
-    return (*items, Ellipsis)
+def record_type(mode: str) -> np.dtype[Any]:
+    return _engine.SAMPLED_CASTS if mode == "sampled" else _engine.CASTS
 
 
-def _dimensions(item: Any) -> int:
-    """How many dimensions an item of an index takes."""
-    if item is None:
-        return 0
-    array = None if isinstance(item, slice) else np.asarray(item)
-    return 1 if array is None or array.dtype != bool else array.ndim
+def records_of(out: Casts, shape: tuple[int, ...], mode: str) -> npt.NDArray[Any]:
+    """Those of `out`, or a ValueError if they cannot take answers of this shape."""
+    if not isinstance(out, Casts):
+        raise ValueError(f"out: expected Casts, got {type(out).__name__}")
+    records, flags = out.records, out.records.flags
+    if records.dtype != record_type(mode) or records.shape != shape:
+        got = f'of shape {records.shape}{" for mode sampled" if "resolution" in records.dtype.names else ""}'
+        raise ValueError(f'out: expected Casts.empty({shape}, "{mode}"), got Casts {got}')
+    if not (flags.c_contiguous and flags.writeable):
+        raise ValueError("out: expected Casts whose records are writeable and C-contiguous")
+    return records
 
 
-def _new_arrays(shape: tuple[int, ...], sampled: bool) -> dict[str, Any]:
-    fields = _FIELDS | _SAMPLED_FIELDS if sampled else _FIELDS
-    return {name: np.empty(shape + inner, dtype) for name, (dtype, inner) in fields.items()}
-
-
-def _arrays_of(casts: Casts, shape: tuple[int, ...], sampled: bool) -> dict[str, Any]:
-    """The arrays of `out`, or a ValueError that names the one that cannot take answers of this shape."""
-    if not isinstance(casts, Casts):
-        raise ValueError(f"out: expected Casts, got {type(casts).__name__}")
-    arrays = {}
-    for name, (dtype, inner) in (_FIELDS | _SAMPLED_FIELDS if sampled else _FIELDS).items():
-        array = getattr(casts, name)
-        fits = isinstance(array, np.ndarray) and array.dtype == dtype and array.shape == shape + inner
-        if not (fits and array.flags.c_contiguous and array.flags.writeable):
-            got = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
-            raise ValueError(
-                f"out.{name}: expected a writeable C-contiguous array of {np.dtype(dtype)} of shape {shape + inner}, "
-                f"got {got}" + ("" if not fits else ", not writeable or not C-contiguous")
-            )
-        arrays[name] = array
-    return arrays
+_names = dict.fromkeys((*_engine.CASTS.names, *_engine.SAMPLED_CASTS.names))
+Casts.__doc__ = f"{Casts.__doc__}" + "".join(f"{name}: {_engine.ANSWERS[name]}\n    " for name in _names)

@@ -15,6 +15,9 @@ _Mesh = tuple[_Floats, _U32, _Doubles]  # vertices about a base, faces, the base
 version: str
 commit: str
 OPTIONS: list[str]
+ANSWERS: dict[str, str]  # what the members of an answer mean
+CASTS: np.dtype[Any]  # of records
+SAMPLED_CASTS: np.dtype[Any]
 MAX_RESOLUTION: int
 MOST_SHOWN: int
 
@@ -41,11 +44,11 @@ class Scene:
         shape: tuple[int, ...],
         arguments: dict[str, Any],
         options: dict[str, Any],
-        out: dict[str, npt.NDArray[Any]],
-        make_arrays: Callable[[int], dict[str, npt.NDArray[Any]]],
+        records: npt.NDArray[Any],
         after_chunk: Callable[[int], object] | None,
-    ) -> tuple[tuple[dict[str, Any], _Ids] | None, tuple[_Ids, _Ids] | None, dict[str, _Ids]]:
-        """The hits' arrays and offsets, if any are asked for; what overlaps, likewise; positions by reason."""
+    ) -> tuple[tuple[npt.NDArray[Any], _Ids] | None, tuple[_Ids, _Ids] | None, dict[str, _Ids]]:
+        """Writes `records`. The hits' records and offsets, if any are asked for; what overlaps, likewise; positions by
+        reason."""
     def page(
         self,
         object_names: dict[int, str],
@@ -53,12 +56,13 @@ class Scene:
         count: int,
         names: list[str],
         arrays: dict[str, npt.NDArray[Any]],
+        records: npt.NDArray[Any],
         reasons: dict[int, str],
         left_out: dict[int, list[int]],
-        hits: tuple[dict[str, npt.NDArray[Any]], _Ids] | None,
+        hits: tuple[npt.NDArray[Any], _Ids] | None,
     ) -> str:
-        """`count` casts, of which `names`, `arrays` and `hits`, C-contiguous, are the first: what was asked, the answers,
-        and the hits' arrays and offsets."""
+        """`count` casts, of which `names`, `arrays`, `records` and `hits`, C-contiguous, are the first: what was asked, the
+        answers, and the hits' records and offsets."""
 
 def first_singular(matrices: _Doubles) -> tuple[int, str] | None: ...
 def float_vertices(vertices: _Doubles, faces: _U32) -> tuple[_Floats, _Doubles, float]:

@@ -27,9 +27,9 @@ from ._arguments import (
     regular,
 )
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
-from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
+from ._asked import Asked
+from ._casts import Casts, Hits, Overlapping, record_type, records_of
 from ._files import Path, file_mesh, vertices_at
-from ._show import Asked
 from ._warnings import DeviceLostWarning, MeshFileWarning, ValidationWarning, warn_of
 
 _ALL_BITS = MOST_MASK
@@ -66,7 +66,7 @@ class Scene:
     0
     >>> above = np.eye(4)
     >>> above[2, 3] = 2
-    >>> scene.cast(plate, above, [[0, 0, -5], [0, 0, -1]], mode="reference").distance
+    >>> scene.cast(plate, above, [[0, 0, -5], [0, 0, -1]], mode="reference").t
     array([ 2., inf])
     """
 
@@ -188,7 +188,7 @@ class Scene:
     def set_motions(self, objects: npt.ArrayLike, motions: npt.ArrayLike) -> None:
         """Says how far objects move during a cast, at constant velocity: ids (...), motions (..., 3), world units;
         leading shapes broadcast. Displacements of casts are then those of the same time: `fraction` says when they meet,
-        and `distance` how far the cast mesh got. Where an object starts does not change."""
+        and `t` how far the cast mesh got. Where an object starts does not change."""
         ways = reals(motions, "motions", (3,))
         if not (np.abs(ways) <= 2.0**1000).all():
             raise ValueError("motions: expected finite numbers up to 2^1000")
@@ -273,8 +273,8 @@ class Scene:
         exclude_from_all: (K,) ids of objects that every cast ignores, or one id.
         mode: "contact", exact, on device or CPU; "sampled", the paper's depth pictures, an upper bound; "reference",
             exact, on the CPU alone. "contact" and "reference" give the same numbers.
-        any_hit: ask only whether there is a contact; cheaper if there is one. A start that overlaps is a HIT, too, and
-            the distance of a hit is the whole way: contact comes by then.
+        any_hit: ask only whether there is a contact; cheaper if there is one. A start that overlaps is a HIT, too, and t
+            of a hit is the whole way: contact comes by then.
         skip_overlapping: leave out objects whose surfaces cross the mesh's at the start; the answer lists them.
 
         The next five are one value for all casts, or (...) one for each:
@@ -289,7 +289,7 @@ class Scene:
 
         resolution: mode "sampled": pixels along the picture's longer side, up to 2048; 0: chosen.
 
-        out: Casts of this shape, whose arrays are used again.
+        out: Casts of this shape and mode, whose records are used again.
         progress: is called with the numbers of casts done and asked for, a few times a second. What it raises ends the
             cast, as Ctrl-C does; `out` then has some of the answers.
 
@@ -320,29 +320,28 @@ class Scene:
         arguments: dict[str, Any] = {"distances": None}
         for name, (array, inner) in arrays.items():
             arguments[name] = np.broadcast_to(array, shape + array.shape[array.ndim - inner :])
-        sampled = mode == "sampled"
-        results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
+        records = np.empty(shape, record_type(mode)) if out is None else records_of(out, shape, mode)
         total = int(np.prod(shape, dtype=np.int64))
         after_chunk = None if progress is None else lambda done: progress(done, total)
         with self._exclusive() as engine:
             try:
-                listed, overlapping, reasons = engine.cast(
-                    shape, arguments, options, results, lambda count: _new_arrays((count,), False), after_chunk
-                )
+                listed, overlapping, reasons = engine.cast(shape, arguments, options, records, after_chunk)
             finally:
                 warn_of(_engine.take_validation_messages(), ValidationWarning)
                 warn_of(engine.take_losses(), DeviceLostWarning)
-        casts = Casts(**results) if out is None else out
-        if not sampled:
-            casts.paper_min_l = casts.resolution = None
-        casts.hits = None if listed is None else Hits(**listed[0], offsets=listed[1], of_shape=shape)
+        casts = Casts(records) if out is None else out
+        casts.hits = None if listed is None else Hits(listed[0], offsets=listed[1], of_shape=shape)
         casts.overlapping = None if overlapping is None else Overlapping(*overlapping, shape)
         casts.reasons = reasons
         for name in _engine.OPTIONS:
             value = {None: np.nan, "all": 0}.get(options[name], options[name])
             arguments.setdefault(name, np.broadcast_to(np.asarray(value, np.float64), shape))
-        casts._asked = Asked.of(self, arguments, shape)
+        casts._asked = Asked.of(self._page, self._names, arguments, shape)
         return casts
+
+    def _page(self, *shown: Any) -> str:
+        with self._reading() as engine:
+            return engine.page(self._names, *shown)
 
     @property
     def device_names(self) -> list[str]:

@@ -2,10 +2,8 @@
 
 import json
 import pathlib
-import struct
 import subprocess
 import sys
-import zlib
 
 import numpy as np
 
@@ -14,7 +12,6 @@ sys.path.insert(0, str(EXAMPLES))
 
 import burr  # noqa: E402
 import disassembly  # noqa: E402
-import picture  # noqa: E402
 from conftest import page_data  # noqa: E402
 from test_scene import ENGINE  # noqa: E402
 
@@ -26,40 +23,6 @@ def run(example: str, *arguments) -> str:
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
-
-
-def chunks(file: pathlib.Path) -> list[tuple[bytes, bytes]]:
-    """Those of a PNG file, with their checksums compared."""
-    content, at, found = file.read_bytes(), 8, []
-    while at < len(content):
-        (length,) = struct.unpack(">I", content[at : at + 4])
-        kind, data = content[at + 4 : at + 8], content[at + 8 : at + 8 + length]
-        assert zlib.crc32(kind + data) == struct.unpack(">I", content[at + 8 + length : at + 12 + length])[0]
-        found.append((kind, data))
-        at += 12 + length
-    return found
-
-
-def pixels(file: pathlib.Path) -> np.ndarray:
-    """A still picture as png.write writes it."""
-    found = dict(chunks(file))
-    width, height = struct.unpack(">II", found[b"IHDR"][:8])
-    rows = np.frombuffer(zlib.decompress(found[b"IDAT"]), np.uint8).reshape(height, 1 + 3 * width)
-    assert (rows[:, 0] == 2).all()
-    return np.cumsum(rows[:, 1:], axis=0, dtype=np.uint8).reshape(height, width, 3)
-
-
-def test_a_picture_shows_the_nearest_triangle_where_it_is():
-    view = np.eye(3)  # from above
-    square = np.array([[[0, 0, 0], [8, 0, 0], [8, 8, 0]], [[0, 0, 0], [8, 8, 0], [0, 8, 0]]], float)
-    above = np.array([[[0, 0, 1], [4, 0, 1], [0, 4, 1]]], float)
-    camera = picture.Camera(view, square.reshape(-1, 3), (80, 80), margin=0)
-    shown = picture.draw(camera, np.concatenate([above, square]), np.array([[1, 0, 0], [0, 1, 0], [0, 1, 0]]))
-    assert (shown[..., 2] == 0).all()  # the square covers all
-    red = shown[..., 0] > 0
-    # Pixel centres in the corner triangle, which the picture shows at its lower left.
-    x, y = np.meshgrid(np.arange(80) + 0.5, 80 - (np.arange(80) + 0.5))
-    assert (red == (x + y < 40)).sum() >= 80 * 80 - 80 and 700 < red.sum() < 900
 
 
 def test_the_blocking_graph_of_a_burr_is_that_of_its_cubes(tmp_path):

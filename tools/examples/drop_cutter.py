@@ -11,10 +11,9 @@ mill, a cone, or any mesh file with its tip at the origin. A round cutter is cas
 around it: its exact height lies between the two. The one around it is driven, --tolerance higher, and cast along every
 straight move, too: where it would touch the part, points are inserted. So it cuts too deep nowhere.
 
-Writes heights.npy (the tip's height at each point of the raster, row by row), heights.png, path.ngc (G-code,
-millimetres), report.json, drops.html (a page that shows some of the casts), of a round cutter also surface.png (what is
-left of the stock), and with a holder holder.csv (where it would touch first; the report says how much longer the tool must
-be).
+Writes heights.npy (the tip's height at each point of the raster, row by row), path.ngc (G-code, millimetres), report.json,
+drops.html (a page of some of the casts), of a round cutter also surface.html (what is left of the stock, and the cutter
+on it), and with a holder holder.csv (where it would touch first; the report says how much longer the tool must be).
 """
 
 from __future__ import annotations
@@ -29,8 +28,6 @@ import time
 import numpy as np
 
 import cyber_radar
-import picture
-import png
 import tool_path
 from cutters import Cutter, Mesh, cylinder
 
@@ -133,6 +130,14 @@ def surface_left(heights: np.ndarray, step: float, cutter: Cutter, top: float) -
     return left
 
 
+def show_surface(file: pathlib.Path, raster: Raster, left: np.ndarray, tool: Mesh, mode: str) -> None:
+    """A page of the finished surface, with the cutter where it is lowest."""
+    points = np.concatenate([raster.points(), left[..., None]], axis=-1).reshape(-1, 3)
+    machine = Machine((points.astype(np.float32), _grid_faces(*left.shape)), 1.0, mode)
+    casts, _ = machine.falls(machine.scene.add_mesh(*tool), points[left.argmin(), :2], mode)
+    casts.show(file, title="The finished surface")
+
+
 def relief(cells: int = 88, side: float = 100.0) -> Mesh:
     """Hills on a square, 2 * cells^2 triangles."""
     u = np.linspace(0, 1, cells + 1)
@@ -164,22 +169,6 @@ def write_path(file: pathlib.Path, top: float, points: np.ndarray) -> None:
     lines = ["G21 G90", f"G0 Z{top:.4f}", "G0 X{:.4f} Y{:.4f}".format(*points[0, :2])]
     lines += ["G1 X{:.4f} Y{:.4f} Z{:.4f} F1000".format(*point) for point in points]
     file.write_text("\n".join([*lines, f"G0 Z{top:.4f}", "M2", ""]))
-
-
-def write_heights(file: pathlib.Path, heights: np.ndarray) -> None:
-    """The lowest is black, the highest white."""
-    low, high = heights.min(), heights.max()
-    grey = np.uint8(255 * (heights - low) / max(high - low, 1e-300))[::-1]
-    png.write(file, np.repeat(grey[..., None], 3, axis=-1))
-
-
-def write_surface(file: pathlib.Path, raster: Raster, left: np.ndarray) -> None:
-    x, y = np.meshgrid(raster.x, raster.y)
-    points = np.stack([x, y, left], axis=-1).reshape(-1, 3)
-    faces = _grid_faces(*left.shape)
-    camera = picture.Camera(picture.view_from((-1.0, -2.0, 2.2)), points, (640, 480))
-    colours = np.broadcast_to([0.55, 0.65, 0.8], (len(faces), 3))
-    png.write(file, picture.draw(camera, points[faces], colours))
 
 
 def compare_modes(machine: Machine, tool: Mesh) -> list[dict]:
@@ -232,13 +221,12 @@ def machine_part(options: argparse.Namespace) -> dict:
     report |= {"points": heights.size, "seconds": seconds, "us_per_point": 1e6 * seconds / heights.size}
 
     np.save(options.out / "heights.npy", heights)
-    write_heights(options.out / "heights.png", heights)
     path, work = machine.path(tool, heights, options.tolerance)
     report |= work
     write_path(options.out / "path.ngc", machine.raster.top, path)
     if cutter is not None:
         left = surface_left(heights + options.tolerance, options.step, cutter, machine.raster.top - 1.0)
-        write_surface(options.out / "surface.png", machine.raster, left)
+        show_surface(options.out / "surface.html", machine.raster, left, tool, options.mode)
     if options.holder:
         held, report["tool_longer_mm"] = machine.hold(holder_from(options), path, options.tolerance)
         table = np.column_stack([path, held])[held > path[:, 2]]

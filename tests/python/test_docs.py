@@ -26,12 +26,10 @@ def test_the_examples_of_a_page_print_what_it_says(page, tmp_path):
     prints_what_it_says("\n".join(examples(page)), tmp_path, [sys.executable, "-W", "error"])
 
 
-def test_the_examples_with_many_processes_print_what_they_say(tmp_path):
+def test_the_example_with_many_processes_prints_what_it_says(tmp_path):
     pytest.importorskip("mpi4py")
-    pytest.importorskip("distributed")
-    of_mpi, of_dask = examples("docs/scaling.md")
+    (of_mpi,) = examples("docs/scaling.md")
     prints_what_it_says(of_mpi, tmp_path, ["mpirun", "-n", "2", sys.executable])
-    prints_what_it_says(of_dask, tmp_path, [sys.executable])
 
 
 def examples(page: str) -> list[str]:

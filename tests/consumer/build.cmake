@@ -1,5 +1,4 @@
-# Builds the README's example, and that of Eigen's arrays in docs/embedding.md, in a separate project and runs them:
-# cmake -DHOW=... -P build.cmake.
+# Builds the README's example, and that of Eigen's arrays, in a separate project and runs them: cmake -DHOW=... -P build.cmake.
 cmake_minimum_required(VERSION 3.25)
 
 file(MAKE_DIRECTORY ${FOLDER})

@@ -1,5 +1,5 @@
-# Compiles each public header alone, and the examples of the README and of docs/embedding.md, with the warnings that careful
-# hosts treat as errors, by each of the compilers. What searches on the CPU alone needs no headers of Vulkan:
+# Compiles each public header alone, and two examples, with the warnings that careful hosts treat as errors, by each of the
+# compilers. What searches on the CPU alone needs no headers of Vulkan:
 #   cmake "-DCOMPILERS=g++;clang++" "-DEXAMPLES=a.cpp;b.cpp" -DSOURCE=... -DVULKAN=... -DEIGEN=... -DFOLDER=... -P warnings.cmake
 cmake_minimum_required(VERSION 3.25)
 

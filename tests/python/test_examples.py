@@ -11,8 +11,10 @@ EXAMPLES = pathlib.Path(__file__).parents[2] / "tools/examples"
 sys.path.insert(0, str(EXAMPLES))
 
 import burr  # noqa: E402
+import cyber_radar  # noqa: E402
 import disassembly  # noqa: E402
-from conftest import page_data  # noqa: E402
+import urdf  # noqa: E402
+from conftest import FACES, box, page_data  # noqa: E402
 from test_scene import ENGINE  # noqa: E402
 
 
@@ -81,3 +83,32 @@ def test_an_engine_comes_apart_and_what_interpenetrates_is_listed(tmp_path):
             assert part not in others
             assert not any((min(part, k), max(part, k)) in crossing for k in others)
     assert all(len(group) > 1 for group in told["locked"])
+
+
+ROBOT = """<robot name="arm">
+  <link name="base"><collision><geometry><mesh filename="package://part.obj"/></geometry></collision></link>
+  <link name="arm"><collision><origin xyz="0 0 2"/><geometry><mesh filename="part.obj" scale="1 1 2"/></geometry></collision>
+  </link>
+  <link name="rail"><collision><geometry><mesh filename="part.obj"/></geometry></collision></link>
+  <joint name="elbow" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="3 0 0"/><axis xyz="0 1 0"/></joint>
+  <joint name="slide" type="prismatic"><parent link="arm"/><child link="rail"/><origin rpy="0 0 1.5707963267948966"/>
+    <axis xyz="1 0 0"/></joint>
+</robot>"""
+
+
+def test_the_links_of_a_robot_stand_where_its_joints_put_them(tmp_path):
+    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
+    (tmp_path / "part.obj").write_text("\n".join(lines))
+    (tmp_path / "robot.urdf").write_text(ROBOT)
+    scene = cyber_radar.Scene()
+    assert urdf.add_robot(scene, tmp_path / "robot.urdf", {"elbow": np.pi / 2, "slide": 5}) == {
+        "base": [0], "arm": [1], "rail": [2]
+    }  # fmt: skip
+    base, arm, rail = scene.objects().transforms
+    assert (base[:3] == np.eye(4)[:3]).all()
+    # A quarter about y takes z to x: the arm points along x from (3, 0, 0).
+    np.testing.assert_allclose(arm[:3], [[0, 0, 1, 5], [0, 1, 0, 0], [-1, 0, 0, 0]], atol=1e-15)
+    # Its slide is along the y axis, since its frame is turned about z.
+    np.testing.assert_allclose(rail[:3, 3], [3, 5, 0], atol=1e-15)
+    assert np.ptp(scene.mesh(int(scene.objects().meshes[1]))[0], axis=0).tolist() == [1, 1, 2]
+    assert run("urdf.py", tmp_path / "robot.urdf", "elbow=0.5") == "base 0\narm 1\nrail 2\n"

@@ -60,7 +60,7 @@ struct Query {
   /// rounding leaves the answer undecided, or lowers lo. (Slivers that are 10^11 times as long as the clearance are
   /// decided, in double-doubles.) `normal` may point along the motion if they are in contact at the start. With
   /// `skipOverlapping`, what is within the clearance without crossing stays; with `ignoreLeaving`, distances tell what
-  /// blocks. What every two options mean together is in one table: docs/query-file.md, "Options together".
+  /// blocks. What options mean together is in docs/query-file.md, "Options together".
   double clearance = 0;
   /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
   /// sensor's box, or of the clearance if that is longer.

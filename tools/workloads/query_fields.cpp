@@ -44,8 +44,8 @@ constexpr QueryField kFields[] = {
      .option = true},
     {.name = "slack",
      .member = &Query::slack,
-     .about = "With these two: how far surfaces that touch may sink into each other, for rounding; else derived from "
-              "the coordinates",
+     .about = "With ignore_leaving or skip_overlapping: how far rounding may have sunk surfaces that touch into each "
+              "other; else derived from the coordinates",
      .cast = true,
      .option = true},
     {.name = "hits",

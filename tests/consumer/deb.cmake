@@ -47,7 +47,7 @@ if(PYTHON)
 scene = cyber_radar.Scene()
 plate = scene.add_mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
 scene.add(plate, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -2], [0, 0, 0, 1]])
-print(cyber_radar.__file__, scene.cast(plate, None, [0, 0, -3]).distance)")
+print(cyber_radar.__file__, scene.cast(plate, None, [0, 0, -3]).t)")
   set(packages ${FOLDER}/usr/lib/python3/dist-packages)
   execute_process(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${packages} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} -c "${asked}"
     OUTPUT_VARIABLE answer COMMAND_ERROR_IS_FATAL ANY)

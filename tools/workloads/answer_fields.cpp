@@ -89,21 +89,20 @@ constexpr AnswerField kFields[] = {
       {[](const AnswerRow& row, size_t) { return double(row.index); }},
       {When::never, When::never, When::never},
       0},
-     "Only in records: the query's index."},
+     "In records only: the query's index."},
     {{{"status"}, kStatus, kMember<&Result::status>, {When::always, When::never, When::always, true}, 152},
      "`hit`: hi <= D. `clear`: certainly no contact within D. `overlap`: the surfaces certainly meet at the start (t = "
-     "lo = hi = 0). `undecided`, only in mode `sampled` and with a `clearance`: hi is null and lo <= D. `invalid`: "
-     "well formed but not answered, with a `reason`."},
+     "lo = hi = 0). `undecided`, in mode `sampled` or with a `clearance`: hi is null, lo <= D. `invalid`: not "
+     "answered, with a `reason`."},
     {{{"t"}, kReal, kTime<&Result::t>, kOfContact, 8, "fraction"},
-     "How far the sensor goes until first contact, the best estimate in the bracket: t* rounded, in mode `sampled` and "
-     "with `any_hit` `hi`, with a `clearance` `lo`. Null for `clear` and `undecided`."},
-    {{{"lo"}, kReal, kMember<&Result::lo>, kOfContact, 16, "fraction_lo"},
-     "No contact before this: the certified bracket's start."},
+     "How far it is to first contact: t*, rounded; in mode `sampled` and with `any_hit`, `hi`; with a "
+     "`clearance`, `lo`. Null for `clear` and `undecided`."},
+    {{{"lo"}, kReal, kMember<&Result::lo>, kOfContact, 16, "fraction_lo"}, "No contact before this."},
     {{{"hi"}, kReal, kMember<&Result::hi>, kOfContact, 24, "fraction_hi"},
-     "A contact by then: t* lies in [lo, hi]. Null: t* is at least lo *or does not exist*. Contact exactly at D has t "
-     "= hi = D."},
+     "t* lies in [lo, hi], certainly. Null: t* is at least lo *or does not exist*. Contact exactly at D has t = hi = "
+     "D."},
     {{{"fraction"}, kReal, kTime<&Result::fraction>, {When::always, When::step, When::always}, 32},
-     "t / D, or of the step: with `motion`, t, lo and hi are this and the next two times the length of the motion."},
+     "t / D, or of the step. With `motion`, t, lo and hi are fractions times the motion's length."},
     {{{"fraction_lo"},
       kReal,
       {[](const AnswerRow& row, size_t) { return row.fractionLo; }},
@@ -130,10 +129,10 @@ constexpr AnswerField kFields[] = {
     {{{"tri_a"}, kId, kIdOf<&Result::triA>, kOfContact, 128}, "The sensor's triangle that touches it."},
     {{{"tri_b"}, kId, kIdOf<&Result::triB>, kOfContact, 136}, "The object's triangle touched."},
     {{{"feature_a"}, kFeature, kMember<&Result::featureA>, {When::always, When::always, When::always}, 154},
-     "The smallest feature of the sensor's triangle that contains every point at which the two touch at that moment, "
-     "exactly; with a `clearance`, of the nearest points. Null without contact."},
+     "The smallest feature of `tri_a` that contains every point at which the triangles touch at that moment, exactly; "
+     "with a `clearance`, of the nearest points. Null without contact."},
     {{{"feature_b"}, kFeature, kMember<&Result::featureB>, {When::always, When::always, When::always}, 155},
-     "The same of the object's triangle."},
+     "Likewise of `tri_b`."},
     {{{"point"}, kVector, kMember<&Result::point>, kOfContact, 72},
      "World position of the contact *at the moment of contact*; exactly the object's corner where `feature_b` is "
      "`vertex`."},
@@ -156,7 +155,7 @@ constexpr AnswerField kFields[] = {
       64},
      "In mode `sampled`: the paper's literal min(L); may be negative, too early or too late."},
     {{{"resolution"}, kCount, kMember<&Result::resolution>, {When::never, When::never, When::sampled}, kNowhere},
-     "Only in Python, in mode `sampled`: pixels along the picture's longer side; 0 if none was drawn."},
+     "In Python only, in mode `sampled`: pixels along the picture's longer side; 0 if none was drawn."},
 };
 
 template <class Number>

@@ -82,6 +82,21 @@ TEST_CASE("a thousand queries at once are answered as in a file, whatever choose
   CHECK(runCommand(folder, "cat lines | " + kStream + "w/world.json").out == expected.out);
 }
 
+TEST_CASE("sensors of a stream are where the numbers of a scaled mesh far away put them") {
+  const ScratchFolder folder;
+  folder.write("far away.obj",
+               "v 512340678 4512350123 296250\nv 512341678 4512350123 296250\n"
+               "v 512340678 4512351123 296250\nf 1 2 3\n");
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": [{"file": "far away.obj", "scale": 0.001}],
+    "scenes": [{"instances": [[0, 1,0,0,-512340, 0,1,0,-4512350, 0,0,1,0]]}], "queries": []})");
+  folder.write("lines", R"({"id": "a", "scene": 0, "sensor": [0, 1,0,0,-512340, 0,1,0,-4512350, 0,0,1,-2.5],)"
+                        R"( "dir": [0,0,1], "D": 8})");
+  const Run run = runProgram(folder, "stream q.json <lines");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  CHECK(nlohmann::json::parse(run.out)["t"].get<double>() == Approx(2.5).epsilon(0).margin(1e-9));
+}
+
 TEST_CASE("a bad line of a stream is named, after the answers to those before it") {
   const ScratchFolder folder;
   writeScene(folder, line("own", -5));

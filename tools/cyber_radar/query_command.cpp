@@ -194,6 +194,17 @@ int judge(const Run& run, const std::vector<Status>& failing) {
   return found.empty() ? 0 : kStatusNotAsWanted;
 }
 
+void check(const Options& options, const QueryFile& queries, const AnsweringOptions& engine) {
+  options.run.checkFormat(queries);
+  Answering answering(queries.world(), queries.modes(), engine);
+  std::vector<QuerySpec> room;
+  constexpr uint64_t kEach = 16'384;
+  for (uint64_t first = 0; first < queries.count(); first += kEach) {
+    answering.check(queries.read(first, std::min(kEach, queries.count() - first), room));
+  }
+  std::cout << options.run.file << ": " << countsOf(queries, engine.mode) << "\n";
+}
+
 int query(const Options& options) {
   const std::vector<Status> failing = statusesIn(options.failOn);
   AnsweringOptions engine = options.run.engine.checked();
@@ -206,14 +217,7 @@ int query(const Options& options) {
   times.loadMs = 1e3 * (now() - start);
   printWarnings(warnings);
   if (options.check) {
-    options.run.checkFormat(queries);
-    Answering answering(queries.world(), queries.modes(), engine);
-    std::vector<QuerySpec> room;
-    constexpr uint64_t kEach = 16'384;
-    for (uint64_t first = 0; first < queries.count(); first += kEach) {
-      answering.check(queries.read(first, std::min(kEach, queries.count() - first), room));
-    }
-    std::cout << options.run.file << ": " << countsOf(queries, engine.mode) << "\n";
+    check(options, queries, engine);
     return 0;
   }
 

@@ -10,7 +10,7 @@ uint findObjects(uint named) {
   ++work;
   const SensorBox box = sensorBoxOf(search);
   const float scale = scaleOf(search), most = limit * unscaleOf(search);
-  for (uint step = 0; step < kObjectSteps; ++step) {
+  [[dont_unroll]] for (uint step = 0; step < kObjectSteps; ++step) {
     const bool searching =
         named == kNobody && current.x == kNobody && depth > 0 && depth == objectDepth && depth < allowed;
     const uint count = countOf(searching);
@@ -90,7 +90,7 @@ void descend() {
   ++work;
   // Whether lanes without work could find some after the loop.
   const bool more = countOf(current.x == kNobody && (depth > 0 || tasksLeft)) != 0;
-  for (uint step = 0; step < kNodeSteps; ++step) {
+  [[dont_unroll]] for (uint step = 0; step < kNodeSteps; ++step) {
     if (current.x == kNobody && depth > objectDepth) current = stack[--depth];
     const bool tries = current.x != kNobody && depth < allowed;
     const uint count = countOf(tries);

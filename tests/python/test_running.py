@@ -330,7 +330,7 @@ def test_a_million_casts_need_no_more_than_their_arrays():
     before = _memory()
     casts = scene.cast(mesh, far, DOWN, mode="reference")
     held = sum(getattr(casts, name).nbytes for name in vars(casts) if isinstance(getattr(casts, name), np.ndarray))
-    assert held == 117_000_000
+    assert held == 120_000_000
     assert _memory() - before < held + 64e6
     assert casts.t.shape == (1_000_000,) and not casts.touches.any()
     assert pickle.loads(pickle.dumps(scene.cast(mesh, far[0], DOWN, mode="reference"))).t == np.inf

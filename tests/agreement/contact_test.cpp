@@ -84,17 +84,3 @@ TEST_CASE("meshes in units so small or large that float cannot hold their poses 
   CHECK(tally.hits >= 5);
   CHECK(tally.clear >= 5);
 }
-
-TEST_CASE("two poles of many triangles each meet in every pair at once, and the least is reported") {
-  Scene scene;
-  const MeshId ball = test::add(scene, tools::makeUvSphere(6, 40));
-  scene.addObject({ball, {}, ~0u});
-  scene.addObject({ball, {}, ~0u});
-  const tools::Tally tally =
-      compare(scene, {{.mesh = ball, .worldFromMesh = test::at(0, 0, -7), .direction = {0, 0, 2}, .distance = 50},
-                      {.mesh = ball, .worldFromMesh = test::at(0, 0, -7), .direction = {0, 0, 2}, .distance = 5},
-                      {.mesh = ball, .worldFromMesh = test::at(0, 0, -2), .direction = {0, 0, 2}, .distance = 5}})
-          .tally;
-  CHECK(tally.hits == 2);
-  CHECK(tally.overlaps == 1);
-}

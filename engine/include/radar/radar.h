@@ -1,14 +1,15 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// Meshes and objects are in scene.h, queries in query.h, answers in answers.h, Vulkan devices in device.h, a scene's
-// copy on one in scene_copy.h, a host's buffers in host.h, Eigen's matrices in eigen.h. Who answers:
+// Meshes and objects are in scene.h, queries in query.h, queries from displacements in displacement.h, answers in
+// answers.h, Vulkan devices in device.h, a scene's copy on one in scene_copy.h, a host's buffers in host.h, Eigen's
+// matrices in eigen.h. Who answers:
 //
 //   one device, or just the answers   Sweeper     (here)           run() blocks; the CPU takes what no device does
 //   no device                         CpuSweeper  (cpu_sweeper.h)  the same bits
 //   several devices                   Pool        (pool.h)         submit() returns a future
 //   your frame, your command buffers  Recorder    (recorder.h)     answers stay on the device; read() brings them
 //
-// All was measured on lavapipe and on CPUs only so far; on no GPU.
+// docs/performance.md says what was measured, and on which devices.
 //
 // Threads: each object of this interface may be used by one thread at a time. Different objects are independent, except
 // that a Sweeper reads its Scene during run() and scopes().
@@ -31,6 +32,7 @@
 
 #include "radar/answers.h"
 #include "radar/device.h"
+#include "radar/displacement.h"
 #include "radar/query.h"
 #include "radar/scene.h"
 #include "radar/scene_copy.h"

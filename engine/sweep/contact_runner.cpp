@@ -204,7 +204,8 @@ void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span
       return OpenSearch{found.results[search], query, Course(query, scene).past(object),
                         cpu::toleranceOf(query, scene.meshes[query.mesh])};
     });
-    std::mutex rest;
+    std::mutex open;
+    std::vector<size_t> again, left;
     parallelFor(groups.size(), kWorthThread, options_.cpuThreads, [&](unsigned, size_t from, size_t to) {
       for (const SearchGroup& group : groups.subspan(from, to - from)) {
         const auto searches = found.results.subspan(group.first, group.count);
@@ -215,10 +216,12 @@ void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span
         const bool lacksRoom = found.roomier && std::ranges::any_of(searches, [](const Result& result) {
                                  return result.flags == Flag::candidates;
                                });
-        const std::scoped_lock lock(rest);
-        (lacksRoom ? flight.again : flight.left).push_back(group.query);
+        const std::scoped_lock lock(open);
+        (lacksRoom ? again : left).push_back(group.query);
       }
     });
+    flight.again.insert(flight.again.end(), again.begin(), again.end());
+    flight.left.insert(flight.left.end(), left.begin(), left.end());
   });
   flight.addCpuTime("decode", msSince(begun));
 }

@@ -1,4 +1,4 @@
-// What the search's lanes do on a device, per query, by command: what docs/performance.md estimates a GPU's speed from.
+// What the lanes of the search do on a device, per query, by command: where its time goes.
 #include <cstdio>
 #include <exception>
 

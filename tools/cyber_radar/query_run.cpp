@@ -15,9 +15,10 @@ Option RunOptions::addTo(Command& command, const std::string& about) {
   command.option("FILE.json", &file, "Query file; - for standard input").required();
   const Option answers =
       command
-          .option("--out", &out,
-                  "Where the answers go: lines of JSON; to a file .npy, records for numpy; to a file .csv, a table; else "
-                  "to standard output")
+          .option(
+              "--out", &out,
+              "Where the answers go: lines of JSON; to a file .npy, records for numpy; to a file .csv, a table; else "
+              "to standard output")
           .value("FILE");
   command
       .option("--shard", &shard,

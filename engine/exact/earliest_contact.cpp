@@ -52,11 +52,9 @@ double EarliestContact::latest() const {
   return s * kept_.length * (1 + 8 * kUnit);
 }
 
-int EarliestContact::orderOf(const PairName& name, const Beginning& beginning) const {
+int EarliestContact::orderOf(const Beginning& beginning) const {
   if (!beginning.overlap && compareToEnd(beginning.first, *motion_) > 0) return 1;
-  if (!found_) return -1;
-  const int order = compareTimes(beginning.overlap, beginning.first, *this);
-  return order == 0 && overlap_ && name_ < name ? 1 : order;
+  return found_ ? compareTimes(beginning.overlap, beginning.first, *this) : -1;
 }
 
 bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning, int order) {

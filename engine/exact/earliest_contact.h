@@ -19,7 +19,7 @@ class EarliestContact {
   void setMotion(const Translation& motion) { motion_ = &motion; }
 
   /// Computes the pair's contact exactly, and keeps it if it is the earliest so far and `counts()`, which is asked
-  /// last. Returns whether it was kept.
+  /// last. Returns whether it was kept. Once a pair that meets at the start is kept, only lesser names may follow.
   template <class Counts>
   bool consider(const PairName& name, const PlacedPair& pair, const Counts& counts) {
     const std::optional<Beginning> beginning = beginningOf(pair);
@@ -62,12 +62,11 @@ class EarliestContact {
   std::optional<Beginning> beginningOf(const PlacedPair& pair) const;
   template <class Counts>
   bool offer(const PairName& name, const PlacedPair& pair, const Beginning& beginning, const Counts& counts) {
-    const int order = orderOf(name, beginning);
+    const int order = orderOf(beginning);
     return order <= 0 && counts() && keep(name, pair, beginning, order);
   }
-  /// -1, 0 or 1: it comes before the earliest so far; with it; later, or too late. At the start only the least name
-  /// counts.
-  int orderOf(const PairName& name, const Beginning& beginning) const;
+  /// -1, 0 or 1: it comes before the earliest so far; with it; later, or too late.
+  int orderOf(const Beginning& beginning) const;
   bool keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning, int order);
   static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
   static int compareToEnd(const Event& event, const Translation& motion);

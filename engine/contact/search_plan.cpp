@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 #include "exact/blocking.h"
 #include "math/frame.h"
@@ -90,6 +92,15 @@ Planned stateSearch(const Query& query, uint32_t result, const Scene::Impl& scen
   return Planned::added;
 }
 
+// In ascending order. Returns where they begin and end.
+std::pair<uint32_t, uint32_t> addExcluded(std::vector<uint32_t>& to, const Query& query, ObjectId object) {
+  const size_t first = to.size();
+  // Who is searched alone takes part.
+  if (object == kNone) to.insert(to.end(), query.exclude.begin(), query.exclude.end());
+  std::sort(to.begin() + static_cast<ptrdiff_t>(first), to.end());
+  return {static_cast<uint32_t>(first), static_cast<uint32_t>(to.size())};
+}
+
 }  // namespace
 
 Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& scene, const ObjectTree& tree,
@@ -100,11 +111,7 @@ Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& 
   gpu::Sweep sweep{};
   const Planned planned = stateSearch(query, result, scene, tree, object, search, sweep);
   if (planned != Planned::added) return planned;
-  search.firstExcluded = static_cast<uint32_t>(excluded.size());
-  // Who is searched alone takes part.
-  if (object == kNone) excluded.insert(excluded.end(), query.exclude.begin(), query.exclude.end());
-  std::sort(excluded.begin() + search.firstExcluded, excluded.end());
-  search.endExcluded = static_cast<uint32_t>(excluded.size());
+  std::tie(search.firstExcluded, search.endExcluded) = addExcluded(excluded, query, object);
   stated.push_back(search);
   sweeps.push_back(sweep);
   return Planned::added;
@@ -149,11 +156,7 @@ void SearchList::add(std::span<const Query> queries, size_t query, std::span<con
   ignoresLeaving_ |= asked.ignoreLeaving;
   hasClearances_ |= asked.clearance > 0;
   groups_.push_back({query, count(), static_cast<uint32_t>(objects.size())});
-  const auto first = static_cast<uint32_t>(excluded_.size());
-  // Who is searched alone takes part.
-  if (objects[0] == kNone) excluded_.insert(excluded_.end(), asked.exclude.begin(), asked.exclude.end());
-  std::sort(excluded_.begin() + first, excluded_.end());
-  const auto end = static_cast<uint32_t>(excluded_.size());
+  const auto [first, end] = addExcluded(excluded_, asked, objects[0]);
   for (const ObjectId object : objects) searches_.push_back({query, object, first, end});
 }
 

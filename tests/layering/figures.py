@@ -13,6 +13,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).parents[2]
 FIGURES = ROOT / "docs/figures.json"
@@ -106,7 +107,20 @@ def take(figures, section, folder):
         ]
         for row in part["rows"]
     }
-    write(figures)
+
+
+def wrong_taking():
+    """Whether take() takes what a run asks for, from a report that has more."""
+    run = {"from": {"part": "methods", "label": ["method", "size"], "columns": ["us", "note", "queries"]}, "figures": {"old": [1]}}
+    made = {"commit": "c", "date": "d", "device": "e", "processor": "p"}
+    rows = [{"method": "fast", "size": 8, "us": 1.2345, "note": "no number", "queries": 12345, "other": 3}]
+    parts = [{"name": "other", "rows": []}, {"name": "methods", "rows": rows}]
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / "report.json").write_text(json.dumps(made | {"parts": parts}))
+        figures = {"page.md#section": [dict(run), "a second run"]}
+        take(figures, "page.md#section", folder)
+    if figures != {"page.md#section": [run | made | {"figures": {"fast 8": [1.23, 12345]}}, "a second run"]}:
+        yield f"take() made of a report {figures}"
 
 
 def write(figures):
@@ -120,8 +134,9 @@ def main():
     figures = json.loads(FIGURES.read_text())
     if sys.argv[1:2] == ["take"]:
         take(figures, *sys.argv[2:])
+        write(figures)
         return 0
-    wrong = [*wrong_tables(figures), *wrong_runs(figures)]
+    wrong = [*wrong_tables(figures), *wrong_runs(figures), *wrong_taking()]
     tell_the_old(figures)
     print("\n".join(wrong) or f"the pages have the figures of {len(figures)} sections of figures.json")
     return 1 if wrong else 0

@@ -175,8 +175,8 @@ def test_other_threads_run_while_a_mesh_is_added_deformed_or_read(tmp_path):
     until_another_thread_runs_within(lambda: cyber_radar._engine.float_vertices(np.float64(vertices), faces))
     lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a} {b} {c}" for a, b, c in faces + 1]
     (tmp_path / "a.obj").write_text("\n".join(lines))
-    until_another_thread_runs_within(lambda: cyber_radar._engine.read_mesh(tmp_path / "a.obj"))
-    until_another_thread_runs_within(lambda: cyber_radar._engine.read_assembly(tmp_path / "a.obj"))
+    until_another_thread_runs_within(lambda: cyber_radar._engine.read_mesh(tmp_path / "a.obj", 1.0))
+    until_another_thread_runs_within(lambda: cyber_radar._engine.read_assembly(tmp_path / "a.obj", 1.0))
 
 
 def test_a_callback_may_look_at_the_scene_that_is_being_cast(boxes):

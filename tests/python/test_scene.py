@@ -174,10 +174,14 @@ def test_a_mesh_file_is_read_as_the_program_reads_it(tmp_path):
         mesh = scene.load_mesh(f"{file}#lid")
         assert len(scene.mesh(mesh)[1]) == 2
         assert scene.load_assembly(file).tolist() == [0, 1]
+        assert (scene.mesh(scene.load_mesh(file, scale=0.001))[0] == np.float32(0.001) * vertices).all()
     assert scene.names == {0: "lid", 1: "box"}
     for wrong, message in (("b.obj", "no such file"), ("a.obj#roof", "a name that none has")):
         with pytest.raises(ValueError, match=message):
             scene.load_mesh(tmp_path / wrong)
+    for wrong, message in ((0, "a finite number above 0, got 0"), ([1, 2], "scale: expected one number"), ("mm", "scale: ")):
+        with pytest.raises(ValueError, match=message):
+            scene.load_mesh(file, scale=wrong)
 
 
 def test_an_assembly_has_an_object_for_each_node_and_keeps_the_names():
@@ -190,7 +194,10 @@ def test_an_assembly_has_an_object_for_each_node_and_keeps_the_names():
     of_again = scene.objects().transforms[again]
     assert (of_again == moved @ scene.objects().transforms[objects]).all()
     assert (scene.objects().masks[again] == 6).all()
-    scene.remove(objects)
+    small = scene.load_assembly(ENGINE, scale=0.5)
+    unscaled, scaled = (scene.objects().transforms[some, :3] for some in (objects, small))
+    assert (scaled[..., :3] == unscaled[..., :3]).all() and (scaled[..., 3] == unscaled[..., 3] / 2).all()
+    scene.remove([*objects, *small])
     assert sorted(scene.names) == again.tolist()
 
 

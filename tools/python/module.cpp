@@ -175,15 +175,15 @@ py::list deviceReports() {
   return list;
 }
 
-py::tuple readMesh(const std::filesystem::path& file) {
+py::tuple readMesh(const std::filesystem::path& file, double scale) {
   std::vector<std::string> warnings;
-  const tools::FileMesh mesh = released([&] { return tools::readMesh(file, warnings); });
+  const tools::FileMesh mesh = released([&] { return tools::readMesh(file, warnings, scale); });
   return py::make_tuple(meshArrays(mesh.positions, mesh.indices, mesh.base), warnings);
 }
 
-py::tuple readAssembly(const std::filesystem::path& file) {
+py::tuple readAssembly(const std::filesystem::path& file, double scale) {
   std::vector<std::string> warnings;
-  const tools::Assembly assembly = released([&] { return tools::readAssembly(file, warnings); });
+  const tools::Assembly assembly = released([&] { return tools::readAssembly(file, warnings, scale); });
   py::list meshes, names;
   std::vector<uint32_t> placed;
   std::vector<double> transforms;

@@ -23,6 +23,10 @@ def cast_option(value: Any, name: str) -> bool | float | str | None:
         return bool(value)
     if value is None or isinstance(value, (bool, str)):
         return value
+    return one_number(value, name)
+
+
+def one_number(value: Any, name: str) -> float:
     number = reals(value, name)
     if number.ndim:
         raise ValueError(f"{name}: expected one number, got shape {number.shape}")

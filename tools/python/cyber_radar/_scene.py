@@ -21,6 +21,7 @@ from ._arguments import (
     device_choice,
     mesh_arrays,
     mesh_vertices,
+    one_number,
     one_whole_number,
     option_of_each,
     refuse_one_each,
@@ -108,21 +109,21 @@ class Scene:
         with self._exclusive() as engine:
             return engine.add_mesh(floats, corners, base)
 
-    def load_mesh(self, file: Path) -> int:
-        """Adds the mesh that read_mesh(file) reads and returns its id."""
-        mesh = file_mesh(file)
+    def load_mesh(self, file: Path, *, scale: float = 1) -> int:
+        """Adds the mesh that read_mesh(file, scale=scale) reads and returns its id."""
+        mesh = file_mesh(file, scale)
         with self._exclusive() as engine:
             return engine.add_mesh(*mesh)
 
     def load_assembly(
-        self, file: Path, transform: npt.ArrayLike | None = None, *, mask: int = _ALL_BITS
+        self, file: Path, transform: npt.ArrayLike | None = None, *, scale: float = 1, mask: int = _ALL_BITS
     ) -> npt.NDArray[np.int64]:
         """Adds one object for each node of a mesh file that has triangles, placed by the nodes' transforms.
 
-        transform: (4, 4) or (3, 4) world from file. Returns the objects' ids, (n,), in the file's depth-first order. `names` has
+        transform: (4, 4) or (3, 4) world from file, whose numbers are multiplied by `scale` before. Returns the objects' ids, (n,), in the file's depth-first order. `names` has
         the nodes' names; nodes that place the same triangles share a mesh.
         """
-        meshes, names, placed, transforms, notes = _engine.read_assembly(os.fspath(file))
+        meshes, names, placed, transforms, notes = _engine.read_assembly(os.fspath(file), one_number(scale, "scale"))
         warn_of(notes, MeshFileWarning)
         if transform is not None:
             transforms = regular(_poses(transform, "transform"), "transform") @ transforms

@@ -18,8 +18,8 @@ namespace {
 
 // Longer lengths are out of range anyway.
 constexpr double kLongest = 1e38;
-// Searches that take as long to state as a thread to start.
-constexpr size_t kWorthThread = 4096;
+// Searches that take as long to state as a thread to wake.
+constexpr size_t kWorthThread = 1024;
 
 void stateDistance(gpu::StatedSearch& out, const Query& query, const Translation& motion) {
   const double way = motion.wayUntil(motion.end);

@@ -8,8 +8,8 @@ namespace radar {
 
 namespace {
 
-// Queries that take as long to validate as a thread to start.
-constexpr size_t kWorthThread = 1u << 14;
+// Queries that take as long to validate as a thread to wake.
+constexpr size_t kWorthThread = 4096;
 
 }  // namespace
 
@@ -45,11 +45,7 @@ void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode,
       return;
     }
   };
-  if (threads == 1) {
-    check(0, queries.size());
-  } else {
-    parallelFor(queries.size(), kWorthThread, threads, [&](unsigned, size_t from, size_t to) { check(from, to); });
-  }
+  parallelFor(queries.size(), kWorthThread, threads, [&](unsigned, size_t from, size_t to) { check(from, to); });
   if (first == queries.size()) return;
   throw Error("query " + std::to_string(first) + ": " + problemOf(queries[first]));
 }

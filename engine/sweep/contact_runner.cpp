@@ -22,8 +22,8 @@ namespace {
 // the batch (docs/performance.md). On another, a submission takes the time in which a CPU answers some queries: an
 // estimate, as no such device has been measured.
 constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
-// Searches whose answers take as long to decode as a thread to start.
-constexpr size_t kWorthThread = 8192;
+// Searches whose answers take as long to decode as a thread to wake.
+constexpr size_t kWorthThread = 2048;
 // Pairs that are left to the host: more of one search are dearer to decide than to search again.
 constexpr size_t kMostDecided = 256;
 

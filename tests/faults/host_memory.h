@@ -7,6 +7,7 @@
 #include <new>
 #include <string>
 
+#include "scene/parallel.h"
 #include "support/engine_work.h"
 
 namespace radar::test {
@@ -37,6 +38,12 @@ Attempt attemptWithoutMemory(int64_t n, const Call& call) {
     explicit Failing(int64_t number) { host_memory::failAt(number); }
     ~Failing() { host_memory::failAt(-1); }
   };
+  // Requests of threads that outlive the call do not count.
+  struct OwnThreads {
+    OwnThreads() { endLoopThreads(); }
+    ~OwnThreads() { endLoopThreads(); }
+  };
+  const OwnThreads started;
   const EngineWork counting;
   const Failing failing(n);
   Attempt made;

@@ -1,4 +1,7 @@
-// Parallel loops: each index once, no worker twice at a time, exceptions for the caller.
+// Parallel loops: each index once, no worker twice at a time, exceptions for the caller, threads that are shared.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <latch>
@@ -99,4 +102,60 @@ TEST_CASE("an exception reaches the caller after all calls have ended") {
   };
   CHECK_THROWS_WITH(loop(), "thrown");
   CHECK(running == 0);
+}
+
+TEST_CASE("loops share threads, also such as run at a time or within each other, and each comes to its end") {
+  std::mutex mutex;
+  std::set<std::thread::id> helpers;
+  std::atomic<int> done = 0;
+  const auto caller = [&] {
+    const auto self = std::this_thread::get_id();
+    for (int i = 0; i < 50; ++i) {
+      parallelFor(8, 1, 3, [&](unsigned, size_t, size_t) {
+        parallelFor(10, 1, 2, [&](unsigned, size_t, size_t) { ++done; });
+        if (std::this_thread::get_id() == self) return;
+        const std::lock_guard lock(mutex);
+        helpers.insert(std::this_thread::get_id());
+      });
+    }
+  };
+  {
+    std::vector<std::jthread> callers;
+    for (int i = 0; i < 3; ++i) callers.emplace_back(caller);
+  }
+  CHECK(done == 3 * 50 * 8 * 10);
+  // At most one for each core, or as many as one loop asks for; other tests may have asked for more.
+  CHECK(helpers.size() <= std::max(4u, threadCount(0)));
+}
+
+TEST_CASE("no call begins after one has thrown, and later loops run all") {
+  std::atomic<int> calls = 0;
+  CHECK_THROWS_WITH(parallelFor(1000, 1, 1,
+                                [&](unsigned, size_t first, size_t) {
+                                  ++calls;
+                                  if (first == 7) throw std::runtime_error("thrown");
+                                }),
+                    "thrown");
+  CHECK(calls == 8);
+  parallelFor(1000, 1, 3, [&](unsigned, size_t, size_t) { ++calls; });
+  CHECK(calls == 1008);
+}
+
+TEST_CASE("a process that forked starts threads of its own") {
+  std::atomic<int> calls = 0;
+  const auto loop = [&] { parallelFor(100, 1, 3, [&](unsigned, size_t, size_t) { ++calls; }); };
+  loop();
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    loop();
+    radar::endLoopThreads();
+    loop();
+    _exit(calls == 300 ? 0 : 1);
+  }
+  int status = -1;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
+  loop();
+  CHECK(calls == 200);
 }

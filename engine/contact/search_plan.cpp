@@ -160,27 +160,29 @@ void SearchList::add(std::span<const Query> queries, size_t query, std::span<con
   for (const ObjectId object : objects) searches_.push_back({query, object, first, end});
 }
 
-SearchSource SearchList::source(std::span<const Query> queries, const Scene::Impl& scene, const ObjectTree& tree,
-                                unsigned threads) const {
+SearchSource SearchList::source(const Of& of) {
+  of_ = of;
   return {count(), excluded_, ignoresLeaving_, hasClearances_,
-          [=, &scene, &tree, this](gpu::StatedSearch* stated, gpu::Sweep* sweeps) {
-            parallelFor(count(), kWorthThread, threads, [&](unsigned, size_t from, size_t to) {
-              for (size_t i = from; i < to; ++i) {
-                const Listed& listed = searches_[i];
-                gpu::StatedSearch search;
-                gpu::Sweep sweep;
-                const auto result = static_cast<uint32_t>(i);
-                if (stateSearch(queries[listed.query], result, scene, tree, listed.object, search, sweep) !=
-                    Planned::added) {
-                  search = {.start = gpu::kNobody, .flags = gpu::kSearchOutOfRange};
-                }
-                search.firstExcluded = listed.firstExcluded;
-                search.endExcluded = listed.endExcluded;
-                stated[i] = search;
-                sweeps[i] = sweep;
-              }
-            });
-          }};
+          [this](gpu::StatedSearch* stated, gpu::Sweep* sweeps) { write(stated, sweeps); }};
+}
+
+void SearchList::write(gpu::StatedSearch* stated, gpu::Sweep* sweeps) const {
+  const ObjectTree& tree = of_.scene->objectTree();
+  parallelFor(count(), kWorthThread, of_.threads, [&](unsigned, size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) {
+      const Listed& listed = searches_[i];
+      gpu::StatedSearch search;
+      gpu::Sweep sweep;
+      if (stateSearch(of_.queries[listed.query], static_cast<uint32_t>(i), *of_.scene, tree, listed.object, search,
+                      sweep) != Planned::added) {
+        search = {.start = gpu::kNobody, .flags = gpu::kSearchOutOfRange};
+      }
+      search.firstExcluded = listed.firstExcluded;
+      search.endExcluded = listed.endExcluded;
+      stated[i] = search;
+      sweeps[i] = sweep;
+    }
+  });
 }
 
 }  // namespace radar

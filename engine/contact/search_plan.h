@@ -66,9 +66,14 @@ class SearchList {
   void reserve(size_t searches);
   /// Adds a search for each of `objects`, of which there are some, as SearchPlan::add().
   void add(std::span<const Query> queries, size_t query, std::span<const ObjectId> objects);
-  /// The tree over objects is in range and not empty; all outlive the source.
-  SearchSource source(std::span<const Query> queries, const Scene::Impl& scene, const ObjectTree& tree,
-                      unsigned threads) const;
+  /// What the searches are of. Its tree over objects is in range and not empty.
+  struct Of {
+    std::span<const Query> queries;
+    const Scene::Impl* scene = nullptr;
+    unsigned threads = 1;
+  };
+  /// Once at a time; all outlive it.
+  SearchSource source(const Of& of);
 
  private:
   struct Listed {
@@ -76,6 +81,9 @@ class SearchList {
     ObjectId object;  ///< the only one to search, or kNone
     uint32_t firstExcluded, endExcluded;
   };
+  void write(gpu::StatedSearch* stated, gpu::Sweep* sweeps) const;
+
+  Of of_;
   std::vector<Listed> searches_;
   std::vector<SearchGroup> groups_;
   std::vector<uint32_t> excluded_;

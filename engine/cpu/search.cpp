@@ -90,9 +90,15 @@ void CpuSweeper::sync() {
 }
 
 Answers CpuSweeper::run(std::span<const Query> queries, const std::stop_token& stop) {
+  Answers answers;
+  run(queries, answers, stop);
+  return answers;
+}
+
+void CpuSweeper::run(std::span<const Query> queries, Answers& answers, const std::stop_token& stop) {
   const FloatEnvironment floats;
   requireValid(queries, impl_->scene);
-  Answers answers = unanswered(queries);
+  clearFor(queries, impl_->search.threads(), answers);
   const uint64_t before = impl_->search.pairs();
   try {
     impl_->search.run(queries, impl_->scene.impl(), answers.results, answers.lists, stop);
@@ -101,7 +107,6 @@ Answers CpuSweeper::run(std::span<const Query> queries, const std::stop_token& s
   }
   answers.stats.pairs = answers.stats.cpuPairs = impl_->search.pairs() - before;
   answers.stats.cpuQueries = queries.size() - answers.reasons.size();
-  return answers;
 }
 
 }  // namespace radar

@@ -17,7 +17,7 @@ namespace radar::cpu {
 class Search {
  public:
   /// `tier`: of the answers. Uses up to `threads` threads (0: one per core), including the caller's; it starts none for
-  /// one query, or for a few that take less time than starting a thread.
+  /// one query, or for a few that take less time than waking a thread.
   Search(Tier tier, unsigned threads) : tier_(tier), threads_(threads) {}
 
   /// Writes the answers to `queries` to `results` and `lists`, of the same length; `lists` may be empty if no query has
@@ -27,6 +27,7 @@ class Search {
   void run(std::span<const Query> queries, const Scene::Impl& scene, std::span<Result> results, std::span<Listed> lists,
            const std::stop_token& stop);
 
+  unsigned threads() const { return threads_; }
   /// Pairs of triangles that all threads have tested since construction.
   uint64_t pairs() const;
 

@@ -5,10 +5,14 @@
 #include <tuple>
 
 #include "query/cancelled.h"
+#include "scene/parallel.h"
 
 namespace radar {
 
 namespace {
+
+// Results that take as long to clear as a thread to wake.
+constexpr size_t kWorthThread = 4096;
 
 // A decision; then answers that are missing, which may hide an earlier contact; then t or, if that is open, lo.
 std::tuple<int, double> keyOf(const Result& result) {
@@ -25,9 +29,25 @@ bool isOrdered(const Result& p, const Result& q) {
 
 }  // namespace
 
+void clearFor(std::span<const Query> queries, unsigned threads, Answers& answers) {
+  const size_t count = queries.size(), before = std::min(answers.results.size(), count);
+  answers.results.resize(count);
+  parallelFor(before, kWorthThread, threads, [&](unsigned, size_t first, size_t last) {
+    std::fill(answers.results.begin() + ptrdiff_t(first), answers.results.begin() + ptrdiff_t(last), Result());
+  });
+  answers.lists.resize(std::ranges::any_of(queries, hasLists) ? count : 0);
+  for (Listed& listed : answers.lists) {
+    listed.hits.clear();
+    listed.overlapping.clear();
+  }
+  answers.reasons.clear();
+  answers.stats = {};
+}
+
 Answers unanswered(std::span<const Query> queries) {
-  const bool someList = std::any_of(queries.begin(), queries.end(), hasLists);
-  return {.results = std::vector<Result>(queries.size()), .lists = std::vector<Listed>(someList ? queries.size() : 0)};
+  Answers answers;
+  clearFor(queries, 1, answers);
+  return answers;
 }
 
 void cancelRest(Answers& answers) {

@@ -14,7 +14,8 @@ inline bool hasLists(const Query& query) {
   return query.hits > 1 || query.skipOverlapping;
 }
 
-/// Invalid answers to all queries, with room for their lists.
+/// Makes `answers` invalid ones to all queries, with room for their lists, in the memory that it has.
+void clearFor(std::span<const Query> queries, unsigned threads, Answers& answers);
 Answers unanswered(std::span<const Query> queries);
 
 struct Merged {

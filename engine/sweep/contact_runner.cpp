@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -162,7 +163,7 @@ void ContactRunner::submit(Flight& flight) {
     if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, tuning_);
     try {
       const Scene::Impl& scene = scene_.impl();
-      submitter_->submit(planned_.source(flight.queries, scene, scene.objectTree(), options_.cpuThreads), scene);
+      submitter_->submit(planned_.source({flight.queries, &scene, options_.cpuThreads}), scene);
     } catch (const Error& error) {
       isTooLarge = gpu::isOutOfMemory(error);
       throw;
@@ -199,11 +200,12 @@ void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span
   attempt(flight, groups, [&] {
     const Scene::Impl& scene = scene_.impl();
     const Deciding how{*resident_.farthest(), kMostDecided, options_.cpuThreads, flight.stop};
-    flight.answers.stats.cpuPairs += decideAll(found.unresolved, how, [&](uint32_t search, ObjectId object) {
+    const auto ask = [&](uint32_t search, ObjectId object) {
       const Query& query = flight.queries[groupOf(groups, search).query];
       return OpenSearch{found.results[search], query, Course(query, scene).past(object),
                         cpu::toleranceOf(query, scene.meshes[query.mesh])};
-    });
+    };
+    flight.answers.stats.cpuPairs += decideAll(found.unresolved, how, std::cref(ask));  // copied, it would be allocated
     std::mutex open;
     std::vector<size_t> again, left;
     parallelFor(groups.size(), kWorthThread, options_.cpuThreads, [&](unsigned, size_t from, size_t to) {

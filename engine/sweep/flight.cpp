@@ -8,12 +8,14 @@
 
 namespace radar {
 
-Flight::Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted)
+Flight::Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted, Answers memory, unsigned threads)
     : queries(asked),
-      answers(unanswered(asked)),
+      answers(std::move(memory)),
       deviceDone(Clock::now()),
       measures(timestamps),
-      stop(std::move(wanted)) {}
+      stop(std::move(wanted)) {
+  clearFor(asked, threads, answers);
+}
 
 void Flight::fail(size_t query, const Error& error) {
   if (error.vulkan == VK_SUCCESS && error.kind != Error::Kind::internal) throw error;

@@ -20,8 +20,9 @@ inline double msSince(Clock::time_point start) {
 
 struct Flight {
   /// `asked` stays in place until the batch is answered. `timestamps`: as SweeperOptions::timestamps. `wanted`: until
-  /// this is requested to stop.
-  Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted = {});
+  /// this is requested to stop. `memory`: to be used again, cleared on `threads` threads.
+  Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted = {}, Answers memory = {},
+         unsigned threads = 1);
 
   std::span<const Query> queries;
   Answers answers;

@@ -108,13 +108,20 @@ void Sweeper::sync() {
 }
 
 Answers Sweeper::run(std::span<const Query> queries, Mode mode, const std::stop_token& stop) {
+  Answers answers;
+  run(queries, answers, mode, stop);
+  return answers;
+}
+
+void Sweeper::run(std::span<const Query> queries, Answers& answers, Mode mode, const std::stop_token& stop) {
   const FloatEnvironment floats;
   if (mode == Mode::sampled) impl_->device.requireSampled("run()");
   requireValid(queries, impl_->scene, mode, false, impl_->options.cpuThreads);
-  Flight flight(queries, impl_->options.timestamps, stop);
+  const SweeperOptions& options = impl_->options;
+  Flight flight(queries, options.timestamps, stop, std::move(answers), options.cpuThreads);
   impl_->begin(flight, mode);
   impl_->finish(flight);
-  return std::move(flight.answers);
+  answers = std::move(flight.answers);
 }
 
 Scopes Sweeper::scopes(const Query& query) {

@@ -12,6 +12,7 @@
 #include "scene/parallel.h"
 #include "support/small_scenes.h"
 #include "sweep/sweeper.h"
+#include "workloads/generate.h"
 
 namespace {
 
@@ -166,4 +167,26 @@ TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter
     return made;
   });
   CHECK(failed > 30);
+}
+
+// But for what lists need, and pairs that only the CPU decides.
+TEST_CASE("batches on the device that repeat allocate nothing") {
+  const tools::Workload workload = tools::makeWorkload(tools::Table1{.boxes = 500, .sensors = 200});
+  tools::ScenePlayer player(workload);
+  player.show(0);
+  const std::vector<Query> queries(workload.queries.begin(), workload.queries.end());
+  const unsigned threads = GENERATE(1u, 2u);
+  Sweeper onDevice(test::watchedDevice(), player.scene(), {.cpuBatch = 0, .cpuThreads = threads});
+  CpuSweeper onCpu(player.scene(), threads);
+  Answers answers;
+  for (int i = 0; i < 3; ++i) onDevice.run(queries, answers);
+  {
+    const test::EngineWork counting;
+    test::host_memory::failAt(-1);
+    onDevice.run(queries, answers);
+  }
+  CHECK(test::host_memory::requests() == 0);
+  const Answers expected = answers;
+  onCpu.run(queries, answers);
+  CHECK(sameContacts(answers, expected));
 }

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "gpu/device.h"
+#include "radar/cpu_sweeper.h"
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
@@ -48,6 +49,38 @@ class WatchedSubmits {
 };
 
 }  // namespace
+
+TEST_CASE("answers in memory that had others are those of a fresh call, in either mode and on the CPU") {
+  const test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 100, .sensors = 16}), 16);
+  std::vector<Query> listing = asked.queries, few(asked.queries.begin(), asked.queries.begin() + 5);
+  for (Query& query : listing) query.hits = kAllHits;
+  std::stop_source stopped;
+  stopped.request_stop();
+  Sweeper sweeper(test::device(), asked.scene, {.cpuBatch = GENERATE(0u, kNone)});
+  CpuSweeper onCpu(asked.scene);
+  Answers answers;
+  const auto compare = [&](const Answers& fresh) {
+    CHECK(differenceOf(answers.results, fresh.results) == "");
+    REQUIRE(answers.lists.size() == fresh.lists.size());
+    for (size_t i = 0; i < fresh.lists.size(); ++i) {
+      CHECK(differenceOf(answers.lists[i].hits, fresh.lists[i].hits) == "");
+      CHECK(answers.lists[i].overlapping == fresh.lists[i].overlapping);
+    }
+    CHECK(answers.reasons == fresh.reasons);
+    CHECK(answers.stats.pairs == fresh.stats.pairs);
+  };
+  for (const std::vector<Query>& queries : {listing, few, asked.queries, few, listing}) {
+    for (const Mode mode : {Mode::contact, Mode::sampled}) {
+      if (mode == Mode::sampled && queries[0].hits > 1) continue;
+      for (const std::stop_token& stop : {std::stop_token(), stopped.get_token()}) {
+        sweeper.run(queries, answers, mode, stop);
+        compare(sweeper.run(queries, mode, stop));
+      }
+    }
+    onCpu.run(queries, answers);
+    compare(onCpu.run(queries));
+  }
+}
 
 TEST_CASE("of a batch whose stop has been requested before, a sweeper answers nothing in either mode") {
   const test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 100, .sensors = 16}), 16);

@@ -75,7 +75,7 @@ class Bench {
   double msOf(ContactSubmitter& submitter) {
     const Scene::Impl& scene = player_.scene().impl();
     std::vector<StageTime> stages;
-    submitter.submit(list_.source(queries_, scene, scene.objectTree(), 1), scene);
+    submitter.submit(list_.source({queries_, &scene}), scene);
     compare(submitter.collect(stages, {}).results);
     double sum = 0;
     for (const StageTime& stage : stages) sum += stage.ms;

@@ -27,8 +27,10 @@ class RADAR_API CpuSweeper {
   /// Answers any number of queries exactly, with Tier::reference. Without a clearance, t is t* to a few roundings,
   /// which also separate `lo` and `hi`, its bounds, and the pair is the least (object, triB, triA) of those that attain
   /// t*. An answer's bits do not depend on its batch or on the number of threads. Throws Error, naming the query, if
-  /// one breaks its contract, before any is answered. A batch of one starts no thread. `stop`: as of Sweeper::run.
+  /// one breaks its contract, before any is answered. A batch of one uses no other thread. `stop`: as of Sweeper::run.
   Answers run(std::span<const Query> queries, const std::stop_token& stop = {});
+  /// As Sweeper::run, too.
+  void run(std::span<const Query> queries, Answers& answers, const std::stop_token& stop = {});
 
  private:
   struct Impl;

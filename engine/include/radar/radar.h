@@ -99,6 +99,10 @@ class RADAR_API Sweeper {
   /// contract. Blocks until done, or soon after another thread requests `stop`: on the CPU at once, on the device once
   /// the submission in hand ends. Queries that have no answer then are Status::invalid ("cancelled").
   Answers run(std::span<const Query> queries, Mode mode = Mode::contact, const std::stop_token& stop = {});
+  /// The same, in the memory that `answers` has: batches that repeat allocate nothing. If it throws, nothing is known
+  /// of what `answers` holds.
+  void run(std::span<const Query> queries, Answers& answers, Mode mode = Mode::contact,
+           const std::stop_token& stop = {});
 
   /// The pictures from which mode sampled answers `query`, at the query's resolution. Throws Error if they do not fit
   /// the device, or it does not support the mode.

@@ -38,13 +38,21 @@ void Answerer::sync() {
 }
 
 Answers Answerer::run(const std::vector<Query>& queries, AnswerMode mode, const std::stop_token& stop) {
-  open(mode);
-  if (mode == AnswerMode::reference) return cpu_->run(queries, stop);
-  const Mode ofDevice = mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
-  Answers answers =
-      pool_ ? Answers(pool_->submit(queries, ofDevice, stop).get()) : sweeper_->run(queries, ofDevice, stop);
-  if (options_.onLost && !answers.stats.lost.empty()) std::exchange(options_.onLost, nullptr)(answers.stats.lost);
+  Answers answers;
+  run(queries, answers, mode, stop);
   return answers;
+}
+
+void Answerer::run(const std::vector<Query>& queries, Answers& answers, AnswerMode mode, const std::stop_token& stop) {
+  open(mode);
+  if (mode == AnswerMode::reference) return cpu_->run(queries, answers, stop);
+  const Mode ofDevice = mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
+  if (pool_) {
+    answers = pool_->submit(queries, ofDevice, stop).get();
+  } else {
+    sweeper_->run(queries, answers, ofDevice, stop);
+  }
+  if (options_.onLost && !answers.stats.lost.empty()) std::exchange(options_.onLost, nullptr)(answers.stats.lost);
 }
 
 }  // namespace radar::tools

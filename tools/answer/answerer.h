@@ -38,6 +38,8 @@ class Answerer {
   void sync();
   /// Opens what the mode needs, and throws and stops as Sweeper::run and Pool::submit do.
   Answers run(const std::vector<Query>& queries, AnswerMode mode, const std::stop_token& stop = {});
+  /// In the memory that `answers` has.
+  void run(const std::vector<Query>& queries, Answers& answers, AnswerMode mode, const std::stop_token& stop = {});
 
   /// Those that are open: none where the CPU has answered everything.
   std::span<const Device> devices() const { return devices_; }

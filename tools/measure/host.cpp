@@ -20,9 +20,9 @@ struct Call {
   std::vector<StageTime> stages;
 };
 
-Call callOf(Sweeper& sweeper, std::span<const Query> queries) {
+Call callOf(Sweeper& sweeper, std::span<const Query> queries, Answers& answers) {
   const double host = threadSeconds(), wall = now();
-  const Answers answers = sweeper.run(queries);
+  sweeper.run(queries, answers);
   return {now() - wall, threadSeconds() - host, answers.stats.stages};
 }
 
@@ -85,9 +85,10 @@ Json hostRows(const Device& device, const HostSettings& settings, const std::fun
       for (const uint32_t threads : settings.threads) {
         Sweeper sweeper(device, player.scene(), {.timestamps = true, .cpuBatch = 0, .cpuThreads = threads});
         // Two for pipelines, lists and pace.
-        for (int i = 0; i < 2; ++i) callOf(sweeper, queries);
+        Answers answers;
+        for (int i = 0; i < 2; ++i) callOf(sweeper, queries, answers);
         std::vector<Call> calls;
-        for (uint32_t i = 0; i < settings.repeats; ++i) calls.push_back(callOf(sweeper, queries));
+        for (uint32_t i = 0; i < settings.repeats; ++i) calls.push_back(callOf(sweeper, queries, answers));
         rows.push_back(rowOf(name, count, threads, calls, median(searches)));
         advance();
       }

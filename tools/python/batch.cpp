@@ -17,6 +17,10 @@ namespace radar::python {
 namespace {
 
 using tools::AnswerMode;
+
+// Queries of a chunk, at most: as many as a cache holds, or as occupy a device that takes less than this for each.
+constexpr uint64_t kMostInCache = 1 << 14, kMostAtOnce = 1 << 17;
+constexpr double kAtOnce = 0.5e-6;  // seconds
 using Clock = std::chrono::steady_clock;
 
 /// Calls `work` with parts of [0, count), on all cores if there is enough to do.
@@ -122,11 +126,12 @@ std::string wrongWith(const Query& query, const Scene& scene, AnswerMode mode) {
 }
 
 /// Answers the queries; those that break their contracts become invalid, with a reason.
-Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMode mode, const std::stop_token& stop) {
-  Answers all;
+void answer(CastingScene& scene, const std::vector<Query>& queries, Answers& all, AnswerMode mode,
+            const std::stop_token& stop) {
   try {
-    return scene.answerer().run(queries, mode, stop);
+    return scene.answerer().run(queries, all, mode, stop);
   } catch (const Error&) {
+    all = {};
     for (size_t i = 0; i < queries.size(); ++i) {
       if (std::string wrong = wrongWith(queries[i], scene.scene(), mode); !wrong.empty()) {
         all.reasons[i] = std::move(wrong);
@@ -147,17 +152,15 @@ Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMod
   for (size_t i = 0; i < numbers.size(); ++i) all.results[numbers[i]] = some.results[i];
   for (size_t i = 0; i < some.lists.size(); ++i) all.lists[numbers[i]] = std::move(some.lists[i]);
   for (const auto& [i, reason] : some.reasons) all.reasons[numbers[i]] = reason;
-  return all;
 }
 
 /// The same, while `look`, if there is one, is called from time to time; gives up what it throws at.
-Answers answerUnless(const std::function<void()>& look, CastingScene& scene, const std::vector<Query>& queries,
-                     AnswerMode mode) {
-  if (!look) return answer(scene, queries, mode, {});
-  Answers answers;
+void answerUnless(const std::function<void()>& look, CastingScene& scene, const std::vector<Query>& queries,
+                  Answers& answers, AnswerMode mode) {
+  if (!look) return answer(scene, queries, answers, mode, {});
   std::stop_source stop;
   std::exception_ptr thrown;
-  Errands::shared().run([&] { answers = answer(scene, queries, mode, stop.get_token()); },
+  Errands::shared().run([&] { answer(scene, queries, answers, mode, stop.get_token()); },
                         [&] {
                           if (thrown) return;
                           try {
@@ -168,7 +171,6 @@ Answers answerUnless(const std::function<void()>& look, CastingScene& scene, con
                           }
                         });
   if (thrown) std::rethrow_exception(thrown);
-  return answers;
 }
 
 void append(BatchLists& to, const Listed& listed, const Query& query) {
@@ -198,8 +200,9 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, char* records, con
   const tools::AnswerLayout& layout = tools::castsLayout(input.mode == AnswerMode::sampled);
   const size_t count = input.count();
   std::vector<Query> queries;
-  // Between two chunks progress is reported. The largest fits into a cache.
-  tools::ChunkSize chunk{.seconds = 0.2, .next = 64, .least = 1, .most = 1 << 14};
+  Answers answers;
+  // Between two chunks progress is reported.
+  tools::ChunkSize chunk{.seconds = 0.2, .next = 64, .least = 1, .most = kMostInCache};
   for (size_t first = 0; first < count;) {
     const Clock::time_point start = Clock::now();
     const size_t end = std::min(first + chunk.next, count);
@@ -208,7 +211,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, char* records, con
       Reader reader(scene.based(), input, first + from, objectsMove);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
-    Answers answers = answerUnless(look, scene, queries, input.mode);
+    answerUnless(look, scene, queries, answers, input.mode);
     inParts(end - first, [&](size_t from, size_t to) {
       for (size_t i = from; i < to; ++i) {
         layout.write({queries[i], answers.results[i], input.mode}, records + layout.size * (first + i));
@@ -217,7 +220,9 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, char* records, con
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
     if (listing) answers.lists.resize(queries.size());  // there are none if no query is valid
     for (size_t i = 0; i < answers.lists.size(); ++i) append(lists, answers.lists[i], queries[i]);
-    chunk.answered(end - first, std::chrono::duration<double>(Clock::now() - start).count());
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    chunk.most = seconds < kAtOnce * double(end - first) ? kMostAtOnce : kMostInCache;
+    chunk.answered(end - first, seconds);
     first = end;
     afterChunk(first);
   }

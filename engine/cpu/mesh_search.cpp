@@ -37,9 +37,10 @@ bool floatsSuffice(const MeshPair& pair) {
 /// Splits pairs of nodes.
 class Opener {
  public:
-  explicit Opener(const MeshPair& pair) : nodesA_(pair.sensor.mesh.tree.nodes), nodesB_(pair.other.mesh.tree.nodes) {
+  /// `matrix`: from A's frame to B's.
+  Opener(const Mesh& a, const Mesh& b, const Matrix3& matrix) : nodesA_(a.tree.nodes), nodesB_(b.tree.nodes) {
     double scale = 0;
-    for (const Vector& row : pair.fromOther.matrix) scale += norm1(row);
+    for (const Vector& row : matrix) scale += norm1(row);
     scale_ = static_cast<float>(std::min(scale / 3, 0x1p100));
   }
 
@@ -190,93 +191,162 @@ class TrianglePlacer {
   Placed last_[2];
 };
 
-/// What the leaves of a pair of meshes are tested with.
+/// Nodes and leaves of meshes of which one moves straight.
 template <class Real>
-struct Leaves {
-  const MeshPair& pair;
-  LeafTest<Real> test;
-  TrianglePlacer placeA, placeB;
-  explicit Leaves(const MeshPair& p)
-      : pair(p), test(p.sensor.mesh, p.other.mesh, p.fromOther), placeA(p.sensor), placeB(p.other) {}
+class StraightTest {
+ public:
+  StraightTest(const MeshPair& pair, PairVisitor& visitor, uint64_t& pairs)
+      : pair_(pair),
+        visitor_(visitor),
+        pairs_(pairs),
+        nodeTimes_(pair.fromSensor, pair.fromOther),
+        leaves_(pair.sensor.mesh, pair.other.mesh, pair.fromOther),
+        placeA_(pair.sensor),
+        placeB_(pair.other),
+        gap_(pair),
+        lead_(pair) {
+    update();
+    lead_.set(visitor.lead().way, visitor.lead().by, visitor.latest());
+  }
+
+  float latest() const { return latest_; }
+  bool keepApart(const gpu::MeshNode& a, const gpu::MeshNode& b) const {
+    return gap_.keepApart(a, b) || lead_.keepApart(a, b);
+  }
+  Times<Real> times(const FourNodes& a, const FourNodes& b) const { return nodeTimes_(a, b); }
+  /// Passes the pairs of triangles of two leaves to the visitor, earliest first.
+  void meet(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
+    meetLeaves(a, b, near);
+    update();
+  }
+
+ private:
+  void update() {
+    latest_ = static_cast<float>((1 + 0x1p-22) * pair_.motion.timeOf(visitor_.latest()));
+    // With a clearance, slabs along the meshes' axes let pass what is up to 1.7 clearances away. The gap of a pair
+    // found so far tells more.
+    gap_.set(pair_.motion.clearance > 0 ? visitor_.across() : Vector{}, pair_.motion.clearance, visitor_.latest());
+  }
+  void meetLeaves(const gpu::MeshNode& a, const gpu::MeshNode& b, float near);
+
+  const MeshPair& pair_;
+  PairVisitor& visitor_;
+  uint64_t& pairs_;
+  const NodeTest<Real> nodeTimes_;
+  LeafTest<Real> leaves_;
+  TrianglePlacer placeA_, placeB_;
+  GapTest gap_, lead_;
+  float latest_ = 0;
 };
 
-/// Passes the pairs of triangles of two leaves to `visitor`, earliest first.
 template <class Real>
-void meetLeaves(Leaves<Real>& leaves, const gpu::MeshNode& a, const gpu::MeshNode& b, float near, PairVisitor& visitor,
-                uint64_t& pairs) {
-  const MeshPair& pair = leaves.pair;
+void StraightTest<Real>::meetLeaves(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
   // Raised by more than rounding to Real may lower it.
-  const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(visitor.latest())); };
-  const LeafTimes<Real> found = leaves.test(a, b, near, latest());
-  pairs += trianglesOf(a) * trianglesOf(b);
-  for (unsigned pending = found.possible; pending != 0 && !visitor.isDecided();) {
+  const auto latest = [&] {
+    return static_cast<Real>((1 + 4 * kRounding<Real>)*pair_.motion.timeOf(visitor_.latest()));
+  };
+  const LeafTimes<Real> found = leaves_(a, b, near, latest());
+  pairs_ += trianglesOf(a) * trianglesOf(b);
+  for (unsigned pending = found.possible; pending != 0 && !visitor_.isDecided();) {
     int lane = std::countr_zero(pending);
     for (int i = lane + 1; i < 4; ++i) {
       if ((pending >> i & 1) != 0 && found.times.from[i] < found.times.from[lane]) lane = i;
     }
     pending &= ~(1u << lane);
     if (found.times.from[lane] > Real(1 + 4 * kRounding<Real>) * (latest() - near)) return;
-    const TrianglePlacer::Placed &ofA = leaves.placeA(a, lane & 1), &ofB = leaves.placeB(b, lane >> 1);
-    visitor.consider({pair.object, ofB.triangle, ofA.triangle}, {ofA.corners, ofB.corners},
-                     static_cast<Axis>(found.axis[lane]));
+    const TrianglePlacer::Placed &ofA = placeA_(a, lane & 1), &ofB = placeB_(b, lane >> 1);
+    visitor_.consider({pair_.object, ofB.triangle, ofA.triangle}, {ofA.corners, ofB.corners},
+                      static_cast<Axis>(found.axis[lane]));
   }
 }
+
+/// The same where one turns.
+class TurningTest {
+ public:
+  TurningTest(const TurningPair& pair, TurnContact& contact, uint64_t& pairs)
+      : pair_(pair),
+        contact_(contact),
+        pairs_(pairs),
+        nodeTimes_(pair.fromSensor, pair.fromOther),
+        placeA_(pair.sensor),
+        placeB_(pair.other) {}
+
+  float latest() const {
+    const double s = std::min(contact_.latest(), pair_.part.end) - pair_.part.from;
+    return static_cast<float>((1 + 0x1p-22) * (s / (pair_.part.end - pair_.part.from)));
+  }
+  bool keepApart(const gpu::MeshNode&, const gpu::MeshNode&) const { return false; }
+  Times<double> times(const FourNodes& a, const FourNodes& b) const { return nodeTimes_(a, b); }
+  void meet(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
+    pairs_ += trianglesOf(a) * trianglesOf(b);
+    const double from = pair_.part.from + (1 - 0x1p-22) * near * (pair_.part.end - pair_.part.from);
+    for (unsigned i = 0; i < trianglesOf(a); ++i) {
+      for (unsigned k = 0; k < trianglesOf(b) && !contact_.isDecided(); ++k) {
+        contact_.setTimes(from, pair_.part.end);
+        const TrianglePlacer::Placed &ofA = placeA_(a, i), &ofB = placeB_(b, k);
+        contact_.consider({pair_.object, ofB.triangle, ofA.triangle}, {ofA.corners, ofB.corners}, 0);
+      }
+    }
+  }
+
+ private:
+  const TurningPair& pair_;
+  TurnContact& contact_;
+  uint64_t& pairs_;
+  const TurnTest nodeTimes_;
+  TrianglePlacer placeA_, placeB_;
+};
 
 }  // namespace
 
 void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs,
                      const std::stop_token& stop) {
+  const auto search = [&](auto test) {
+    descend(pair.sensor.mesh.tree, pair.other.mesh.tree,
+            Opener(pair.sensor.mesh, pair.other.mesh, pair.fromOther.matrix), pair.object, near, test, visitor, stop);
+  };
   if (floatsSuffice(pair)) {
-    descend<float>(pair, near, visitor, pairs, stop);
+    search(StraightTest<float>(pair, visitor, pairs));
   } else {
-    descend<double>(pair, near, visitor, pairs, stop);
+    search(StraightTest<double>(pair, visitor, pairs));
   }
 }
 
-template <class Real>
-void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs,
-                         const std::stop_token& stop) {
-  const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
-  const NodeTest<Real> nodeTimes(pair.fromSensor, pair.fromOther);
-  Leaves<Real> leaves(pair);
-  const Opener opener(pair);
-  const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(visitor.latest())); };
-  float latest = 0;
-  // With a clearance, slabs along the meshes' axes let pass what is up to 1.7 clearances away. The gap of a pair found
-  // so far tells more.
-  GapTest gap(pair), lead(pair);
-  const auto update = [&] {
-    latest = latestNow();
-    gap.set(pair.motion.clearance > 0 ? visitor.across() : Vector{}, pair.motion.clearance, visitor.latest());
-  };
-  update();
-  lead.set(visitor.lead().way, visitor.lead().by, visitor.latest());
-  uint32_t visits = 0;
+void MeshSearch::run(const TurningPair& pair, double near, TurnContact& contact, uint64_t& pairs,
+                     const std::stop_token& stop) {
+  TurningTest test(pair, contact, pairs);
+  descend(pair.sensor.mesh.tree, pair.other.mesh.tree,
+          Opener(pair.sensor.mesh, pair.other.mesh, pair.fromOther.matrix[0]), pair.object, near, test, contact, stop);
+}
 
+template <class Opener, class Test>
+void MeshSearch::descend(const MeshTree& treeA, const MeshTree& treeB, const Opener& opener, ObjectId object,
+                         double near, Test& test, PairVisitor& visitor, const std::stop_token& stop) {
+  uint32_t visits = 0;
   open_.resize(3 * (size_t{treeA.depth} + treeB.depth) + 4);
   open_[0] = {static_cast<float>((1 - 0x1p-22) * near), 0, 0};
   Open* top = open_.data() + 1;
   while (top != open_.data() && !visitor.isDecided()) {
     const Open pairNow = *--top;
-    if (pairNow.near > latest) continue;
-    if (visitor.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
+    if (pairNow.near > test.latest()) continue;
+    if (visitor.isBefore({object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
     const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
-    if (gap.keepApart(a, b) || lead.keepApart(a, b)) continue;
+    if (test.keepApart(a, b)) continue;
     // To decide a pair of triangles may take as long as to test very many nodes.
     const bool areLeaves = isLeaf(a) && isLeaf(b);
     if (areLeaves || ++visits % kVisits == 0) throwIfStopped(stop);
     if (areLeaves) {
-      meetLeaves(leaves, a, b, pairNow.near, visitor, pairs);
-      update();
+      test.meet(a, b, pairNow.near);
       continue;
     }
-    const Opener::Parts parts = opener.open(pairNow.a, pairNow.b);
+    const typename Opener::Parts parts = opener.open(pairNow.a, pairNow.b);
     FourNodes nodesA, nodesB;
     for (int i = 0; i < 4; ++i) {
       nodesA[i] = &treeA.nodes[parts.a[i]];
       nodesB[i] = &treeB.nodes[parts.b[i]];
     }
-    for (const int32_t key : inOrder(nodeTimes(nodesA, nodesB), parts.valid)) {
+    const float latest = test.latest();
+    for (const int32_t key : inOrder(test.times(nodesA, nodesB), parts.valid)) {
       // Written member by member, as it is read back: otherwise store forwarding fails and the processor waits.
       top->near = nearOf(key);
       top->a = parts.a[key & 3];

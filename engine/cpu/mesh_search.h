@@ -6,6 +6,7 @@
 
 #include "cpu/first_contact.h"
 #include "cpu/node_test.h"
+#include "cpu/turn_contact.h"
 #include "query/cancelled.h"
 
 namespace radar::cpu {
@@ -25,6 +26,14 @@ struct MeshPair {
   const RelativePlacement &fromSensor, &fromOther;
 };
 
+/// The same in a part of a turn.
+struct TurningPair {
+  PlacedMesh sensor, other;  ///< at the start of the step
+  ObjectId object;
+  const TurnPart& part;
+  const TurnPlacement &fromSensor, &fromOther;
+};
+
 /// Reuses its memory between searches. For one thread at a time.
 class MeshSearch {
  public:
@@ -32,6 +41,8 @@ class MeshSearch {
   /// pair's unit of time. Adds the pairs of triangles that are tested to `pairs`. Throws Cancelled soon after `stop` is
   /// requested.
   void run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs, const std::stop_token& stop);
+  /// The same in a part of a turn; `near`: of 1, the whole part.
+  void run(const TurningPair& pair, double near, TurnContact& contact, uint64_t& pairs, const std::stop_token& stop);
 
  private:
   /// Two nodes that cannot meet before `near`.
@@ -40,8 +51,9 @@ class MeshSearch {
     uint32_t a, b;
   };
 
-  template <class Real>
-  void descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs, const std::stop_token& stop);
+  template <class Opener, class Test>
+  void descend(const MeshTree& treeA, const MeshTree& treeB, const Opener& opener, ObjectId object, double near,
+               Test& test, PairVisitor& visitor, const std::stop_token& stop);
 
   std::vector<Open> open_;
 };

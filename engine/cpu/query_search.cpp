@@ -50,6 +50,7 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   stop_ = &stop;
   std::vector<ObjectId> skipped;
   if (query.skipOverlapping) skipped = overlapping(query, scene, tree);
+  if (turns(query)) return answerTurn(query, scene, tree, skipped, lists);
   const Task task(query, scene);
   const auto find = [&](auto&& finder) {
     const auto wants = [&](double near) {
@@ -76,10 +77,94 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   return find(FirstContact(query, task.motion));
 }
 
+Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
+                               std::span<const ObjectId> skipped, Listed* lists) {
+  const Task task(query, scene);
+  const TurnMotion motion(query, task.sensor);
+  TurnContact finder(query, motion, turnToleranceOf(query, task.sensor, motion));
+  // Of several hits, an object is searched in all parts before the next one.
+  std::vector<std::pair<ObjectId, const TurnPart*>> reached;
+  for (const TurnPart& part : motion.parts()) {
+    Box start = part.start;
+    for (int k = 0; k < 3; ++k) {
+      start.lo[k] -= query.clearance;
+      start.hi[k] += query.clearance;
+    }
+    const auto wants = [&](double near) {
+      return !finder.isDecided() && finder.latest() >= part.from && near <= part.piece.wayUntil(finder.latest());
+    };
+    walk(Participants(query, scene), tree, part.piece, start, wants, [&](ObjectId id) {
+      if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
+      if (query.hits > 1) return reached.emplace_back(id, &part), void();
+      searchTurning(task, id, motion, part, finder);
+    });
+  }
+  std::ranges::stable_sort(reached, {}, [](const auto& one) { return one.first; });
+  for (size_t i = 0; i < reached.size(); ++i) {
+    searchTurning(task, reached[i].first, motion, *reached[i].second, finder);
+    if (i + 1 == reached.size() || reached[i + 1].first != reached[i].first) finder.endObject();
+  }
+  Result first = finder.first();
+  if (lists != nullptr) *lists = {finder.nearest(), {skipped.begin(), skipped.end()}};
+  if (query.clearance > 0) {
+    Query still = query;
+    still.motion = Vector{};
+    still.turn.reset();
+    describeStart(still, scene, tree, skipped, first, lists);
+  }
+  return first;
+}
+
+void QuerySearch::searchTurning(const Task& task, ObjectId id, const TurnMotion& motion, const TurnPart& part,
+                                TurnContact& finder) {
+  throwIfStopped(*stop_);
+  const Object& object = task.scene.objects[id].object;
+  const Mesh& mesh = task.scene.meshes[object.mesh];
+  if (finder.isBefore({id, mesh.tree.below[0].least, 0})) return;
+  const MeshPlacement placement(mesh, object.worldFromMesh);
+  const MeshPlacement *const turning[] = {&part.at[0], &part.at[1]}, *const resting[] = {&placement, &placement};
+  Vector toObject[2], toSensor[2];
+  for (int e = 0; e < 2; ++e) {
+    const Vector moved = along(placement.origin, e == 0 ? part.from : part.end, object.motion);
+    toObject[e] = minus(moved, part.at[e].origin);
+    toSensor[e] = scaled(-1, toObject[e]);
+  }
+  const double error = task.query.clearance + part.error + 8 * kUnit * norm1(object.motion);
+  const FourNodes rootA{&task.sensor.tree.nodes[0], &task.sensor.tree.nodes[0], &task.sensor.tree.nodes[0],
+                        &task.sensor.tree.nodes[0]};
+  const FourNodes rootB{&mesh.tree.nodes[0], &mesh.tree.nodes[0], &mesh.tree.nodes[0], &mesh.tree.nodes[0]};
+  const TurnPlacement fromSensor({{&part.axes[0], &part.axes[1]},
+                                  {turning[0], turning[1]},
+                                  {resting[0], resting[1]},
+                                  {toObject[0], toObject[1]},
+                                  error,
+                                  motion.bendSeen(part, object.motion),
+                                  motion.turning().axis()});
+  if (TurnTest::areApart(fromSensor, rootA, rootB)) return;
+  const MeshAxes axes(placement.linear);
+  const TurnPlacement fromObject({{&axes, &axes},
+                                  {resting[0], resting[1]},
+                                  {turning[0], turning[1]},
+                                  {toSensor[0], toSensor[1]},
+                                  error,
+                                  part.bend,
+                                  motion.turning().axis()});
+  if (TurnTest::areApart(fromObject, rootB, rootA)) return;
+  finder.beginObject(object.motion);
+  const TurningPair pair{{task.sensor, task.query.worldFromMesh, task.placement},
+                         {mesh, object.worldFromMesh, placement},
+                         id,
+                         part,
+                         fromSensor,
+                         fromObject};
+  meshes_.run(pair, 0, finder, pairs_, *stop_);
+}
+
 std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
   Query still = query;
   still.distance = still.clearance = 0;
-  if (query.motion) still.motion = Vector{};
+  if (query.motion || query.turn) still.motion = Vector{};
+  still.turn.reset();
   const Task task(still, scene);
   std::vector<ObjectId> found;
   CrossingTest test;

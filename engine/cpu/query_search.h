@@ -28,6 +28,10 @@ class QuerySearch {
   /// object.
   void describeStart(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
                      std::span<const ObjectId> skipped, Result& first, Listed* lists);
+  Result answerTurn(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
+                    std::span<const ObjectId> skipped, Listed* lists);
+  void searchTurning(const Task& task, ObjectId id, const TurnMotion& motion, const TurnPart& part,
+                     TurnContact& finder);
   template <class Finder>
   void search(const Task& task, ObjectId id, Finder& finder);
   /// `clearance`: as of a PairMotion.

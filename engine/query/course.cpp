@@ -29,7 +29,7 @@ Translation Course::past(ObjectId object) const {
 }
 
 void Course::toQuery(Result& result) const {
-  if (!isStep_ || query_.motion) return;
+  if (!isStep_ || query_.motion || query_.turn) return;
   // A bracket's ends are equal only at the start or the end. The floor is what a product may lose if it is subnormal.
   const double distance = query_.distance;
   const bool isExact = result.lo == result.hi;
@@ -42,7 +42,7 @@ void Course::toQuery(Result& result) const {
 }
 
 std::array<double, 3> displacementOf(const Query& query) {
-  if (query.motion) return *query.motion;
+  if (query.motion || query.turn) return query.motion.value_or(Vector{});
   const Translation sweep(query);
   return scaled(sweep.end, sweep.unit);
 }
@@ -69,7 +69,7 @@ void setDisplacement(Query& query, const std::array<double, 3>& way, Mode mode, 
 }
 
 void toDistances(const Query& query, Result& result) {
-  if (!query.motion) return;
+  if (!query.motion || query.turn) return;
   // The length rounds, as products do; the floor is what a subnormal product loses.
   constexpr double kRoom = 0x1p-50, kFloor = std::numeric_limits<double>::denorm_min();
   const double length = lengthOfWay(*query.motion);

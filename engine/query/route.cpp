@@ -14,6 +14,7 @@ constexpr size_t kWorthThread = 4096;
 }  // namespace
 
 const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRevise) {
+  if (query.turn) return "a turn";
   const bool step = isStep(query, scene);
   if (query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || step)) {
     return "a clearance with ignoreLeaving, hits or a step";
@@ -33,7 +34,7 @@ void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode,
   const auto problemOf = [&](const Query& query) {
     std::string wrong = validate(query, scene, mode);
     const char* what = wrong.empty() && areRecorded ? onlyForCpu(query, scene.impl(), false) : nullptr;
-    if (what != nullptr) wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
+    if (what != nullptr) wrong = std::string("only the CPU answers ") + what + ": ask a Sweeper";
     return wrong;
   };
   std::atomic<size_t> first = queries.size();  // of those that are wrong

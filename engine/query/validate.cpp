@@ -16,17 +16,43 @@ namespace {
 // Lengths of directions up to this do not overflow, if they cannot be scaled exactly.
 constexpr double kMostLength = 0x1p1023;
 
+// Of turns, as of poses: products of a few of them do not overflow.
+constexpr double kMostCentre = 0x1p800, kMostAngle = 0x1p16;
+
 // Of the sensor's size or, if that is more, of the clearance: a larger slack would let shapes pass each other.
 constexpr double kMostSlack = 0.1;
 
+std::string validateTurn(const Query& query) {
+  const Turn& turn = *query.turn;
+  if (!std::isfinite(turn.angle) || std::abs(turn.angle) > kMostAngle) {
+    return "expected a finite angle of at most 2^16, got " + textOf(turn.angle);
+  }
+  for (const double value : turn.axis) {
+    if (!std::isfinite(value)) return "expected an axis of 3 finite numbers, got " + textOf(value);
+  }
+  if (turn.angle != 0 && turn.axis == Vector{}) return "expected an axis that is not zero";
+  for (const double value : turn.centre) {
+    if (!(std::abs(value) <= kMostCentre)) return "expected a centre up to 2^800, got " + textOf(value);
+  }
+  for (const double value : query.motion.value_or(Vector{})) {
+    if (!(std::abs(value) <= kMostCentre)) return "expected a motion up to 2^800 beside it, got " + textOf(value);
+  }
+  if (query.ignoreLeaving && turn.angle != 0) return "expected no ignoreLeaving beside it";
+  return {};
+}
+
 // Checks where a query's sensor goes.
 std::string validateCourse(const Query& query, const Scene::Impl& scene) {
-  if (query.motion) {
-    if (std::string wrong = validateMotion(*query.motion); !wrong.empty()) return "motion: " + wrong;
+  if (query.motion || query.turn) {
+    const std::string name = query.turn ? "turn" : "motion";
     if (query.direction != std::array<double, 3>{} || query.distance != 0) {
-      return "motion: expected no direction and no distance beside it";
+      return name + ": expected no direction and no distance beside it";
     }
-    return {};
+    if (query.turn) {
+      if (std::string wrong = validateTurn(query); !wrong.empty()) return "turn: " + wrong;
+    }
+    const std::string wrong = validateMotion(query.motion.value_or(Vector{}));
+    return wrong.empty() ? wrong : "motion: " + wrong;
   }
   double largest = 0;
   for (double value : query.direction) {

@@ -85,7 +85,7 @@ Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);
 
 /// Whether a query takes a step.
 inline bool isStep(const Query& query, const Scene::Impl& scene) {
-  return query.motion.has_value() || scene.moving > 0;
+  return query.motion || query.turn || scene.moving > 0;
 }
 
 /// Components of displacements up to this are valid: their sums and lengths do not overflow.

@@ -284,3 +284,30 @@ TEST_CASE("query answers steps in which objects move and meshes are deformed") {
   CHECK((lines[2]["t"] == 6 && lines[2]["fraction"] == 0.5 && !lines[2].contains("fraction_lo")));
   CHECK((lines[3]["t"] == 6 && lines[3]["fraction"] == 0.5));
 }
+
+TEST_CASE("a query that turns is answered with a bracket of the step, and refused where nothing can be drawn of it") {
+  const ScratchFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+  // The triangle opens like a lid, up to another one at the height of half its length.
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj"],
+    "scenes": [{"id": "a", "instances": [[0, 1,0,0,-0.5, 0,1,0,0, 0,0,1,2]]}],
+    "queries": [{"id": "lid", "scene": 0, "sensor": [0],
+                 "turn": {"axis": [3, 0, 0], "angle": 1.5707963267948966, "centre": [9, 0, 0]}},
+                {"id": "away", "scene": 0, "sensor": [0], "motion": [0, 0, -1],
+                 "turn": {"axis": [1, 0, 0], "angle": -1, "centre": [0, 0, 0]}}]})");
+  const char* mode = GENERATE("contact", "reference");
+  const Run run = runProgram(folder, std::string("query q.json --out a.jsonl --mode ") + mode);
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  const auto lines = linesOf(folder.read("a.jsonl"));
+  CHECK((lines[0]["status"] == "hit" && lines[0]["t"] == lines[0]["fraction_lo"]));
+  CHECK((lines[0]["fraction_lo"] <= 1 / 3.0 + 1e-9 && lines[0]["fraction_hi"] >= 1 / 3.0 - 1e-9));
+  CHECK(double(lines[0]["fraction_hi"]) - double(lines[0]["fraction_lo"]) < 1e-6);
+  CHECK((lines[1]["status"] == "clear"));
+  CHECK(runProgram(folder, "query q.json --check").status == 0);
+  for (const char* command : {"view q.json a.jsonl --out v.html", "scopes q.json --query lid --out s"}) {
+    const Run refused = runProgram(folder, command);
+    CHECK(refused.status == 2);
+    CHECK_THAT(refused.err, Contains("expected ") && Contains("straight motion") && Contains("got a turn"));
+  }
+}

@@ -46,7 +46,7 @@ void checkContract(const Query& query, const Result& result) {
     require(result.lo == INFINITY && result.hi == INFINITY && result.t == INFINITY, "clear, but with times");
   }
   if (!met) return require(result.hi == INFINITY && result.object == kNone, "no contact, but with its object");
-  const double end = query.motion ? 1 : query.distance;
+  const double end = query.motion || query.turn ? 1 : query.distance;
   require(0 <= result.lo && result.lo <= result.hi && result.hi <= end, "bounds in disorder");
   if (query.anyHit) return require(result.object == kNone && result.lo == 0 && result.hi == end, "a decision");
   require(result.lo <= result.t && result.t <= result.hi, "t is not within the bounds");

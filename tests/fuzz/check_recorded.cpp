@@ -42,7 +42,7 @@ void checkAnswer(const Query& query, const Result& found, const Result& exact, O
     require(found.object == kNone && !std::isfinite(found.t) && !std::isfinite(found.hi), "no answer, but a contact");
     return require(found.status == Status::invalid && std::isnan(found.lo), "a flag, but not invalid");
   }
-  const double end = query.motion ? 1 : query.distance;
+  const double end = query.motion || query.turn ? 1 : query.distance;
   require(found.t == found.lo, "open, but t is not lo");
   if (found.status == Status::hit) {
     return require(exact.status == Status::hit && found.lo <= exact.hi && exact.lo <= found.hi,

@@ -18,7 +18,7 @@ namespace {
 using Name = std::tuple<ObjectId, uint32_t, uint32_t>;
 
 /// A turn by up to `angle` about an axis through a centre that moves by `way`.
-struct Turn {
+struct TurnAbout {
   Vector centre, axis, way;
   double angle;
 
@@ -44,7 +44,7 @@ struct Straightened {
   Piece piece;
   Transform pose;  // at the start
 
-  Straightened(const Turn& turn, const Transform& start, const Mesh& mesh, double from, double end) {
+  Straightened(const TurnAbout& turn, const Transform& start, const Mesh& mesh, double from, double end) {
     const Box box = boxOf(mesh, start.m);
     const Vector middle{box.middle(0), box.middle(1), box.middle(2)}, first = turn.place(middle, from);
     const Vector way = minus(turn.place(middle, end), first);
@@ -119,8 +119,8 @@ TEST_CASE("the search of a piece passes all pairs that cross while the sensor tu
     for (int i = 0; i < 8; ++i) scene.addObject({.mesh = random.below(3), .worldFromMesh = pose(5)});
     const Query query{.mesh = random.below(3), .worldFromMesh = pose(2)};
     const Vector towards = random.inCube(1);
-    const Turn turn{random.inCube(4 * size), scaled(1 / std::sqrt(dot(towards, towards)), towards),
-                    random.oneIn(3) ? Vector{} : Vector(random.inCube(3 * size)), angle};
+    const TurnAbout turn{random.inCube(4 * size), scaled(1 / std::sqrt(dot(towards, towards)), towards),
+                         random.oneIn(3) ? Vector{} : Vector(random.inCube(3 * size)), angle};
     const Scene::Impl& impl = scene.impl();
     const Mesh& sensor = impl.meshes[query.mesh];
     const uint32_t parts = 1 + random.below(6);

@@ -367,6 +367,7 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
   file["queries"][0].erase("dir");
   file["queries"][0].erase("D");
   file["queries"][0]["motion"] = nlohmann::json::parse("[0, -1, 1e-3]");
+  file["queries"][0]["turn"] = nlohmann::json::parse(R"({"axis": [0, 2, 0.5], "angle": -3.5, "centre": [1, 2, 1e9]})");
   file["queries"][1]["mode"] = "reference";
   const Workload workload = files.read(file.dump());
   std::vector<std::string> warnings;
@@ -378,6 +379,11 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
     CHECK(one.scenes[1].deforms[0].positions == positions);
     CHECK(one.queries[0].motion == std::array<double, 3>{0, -1, 1e-3});
     CHECK_FALSE(one.queries[1].motion);
+    REQUIRE(one.queries[0].turn);
+    CHECK(one.queries[0].turn->axis == std::array<double, 3>{0, 2, 0.5});
+    CHECK(one.queries[0].turn->angle == -3.5);
+    CHECK(one.queries[0].turn->centre == std::array<double, 3>{1, 2, 1e9});
+    CHECK_FALSE(one.queries[1].turn);
   }
   const auto refused = [&](const char* pointer, const char* value) {
     nlohmann::json changed = file;
@@ -395,6 +401,14 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
            {"/scenes/1/deforms/0/1", R"("none.f32")", "scenes[1].deforms[0]", "no such file"},
            {"/queries/0/D", "2", "queries[0].D: ", "got both"},
            {"/queries/0/motion", "[1, 2]", "queries[0].motion: ", ""},
+           {"/queries/0/turn", R"({"axis": [0, 0, 1], "angle": 1})", "queries[0].turn: ", "centre"},
+           {"/queries/0/turn/axis", "[0, 1]", "queries[0].turn.axis: ", "3"},
+           {"/queries/0/turn/pitch", "1", "queries[0].turn.pitch: ", "angle"},
+           {"/queries/0/turn/axis", "[0, 0, 0]", "queries[0].turn.axis: ", "not zero"},
+           {"/queries/0/turn/angle", "7e4", "queries[0].turn.angle: ", "2^16"},
+           {"/queries/0/turn/centre", "[0, 1e300, 0]", "queries[0].turn.centre[1]: ", "2^800"},
+           {"/queries/0/ignore_leaving", "true", "queries[0].ignore_leaving: ", "turn"},
+           {"/queries/0/speed", "2", "queries[0].speed: ", "turn"},
            {"/queries/0/motion", "[0, 1e305, 0]", "queries[0].motion[1]: ", "2^1000"},
            {"/queries/1/D", "1e305", "queries[1].D: ", ""},
            {"/queries/1/mode", R"("sampled")", "queries[1].mode: ", "\"motions\" needs"}}) {

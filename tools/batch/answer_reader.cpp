@@ -40,7 +40,7 @@ Result resultOf(const RowReader& row, const Workload& workload, std::optional<St
   requireBelow(row, "tri_a", workload.meshes[query.mesh].triangleCount());
   for (const AnswerField& field : answerFields()) {
     if (!field.set || &field == &ofStatus || field.line == When::never) continue;
-    const AnswerField& from = query.motion && field.ofStep ? *findAnswerField(field.ofStep) : field;
+    const AnswerField& from = takesStep(query) && field.ofStep ? *findAnswerField(field.ofStep) : field;
     for (size_t part = 0; part < field.width; ++part) field.set(result, row.number(from, part), part);
   }
   if (result.object == kNone) {

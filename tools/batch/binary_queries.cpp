@@ -177,6 +177,9 @@ void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesyste
     parts.push_back(std::move(append));
   };
   const auto put = [&](const auto& value) { appendBytes(rows, value); };
+  if (std::ranges::any_of(queries, [](const QuerySpec& query) { return query.turn.has_value(); })) {
+    throw std::runtime_error(file.string() + ": expected queries without turns, for which an array has no columns");
+  }
   const bool steps = std::ranges::any_of(queries, [](const QuerySpec& query) { return query.motion.has_value(); });
   if (steps && !std::ranges::all_of(queries, [](const QuerySpec& query) { return query.motion.has_value(); })) {
     throw std::runtime_error(file.string() + ": expected either motions or directions in all queries, got both");

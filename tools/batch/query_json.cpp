@@ -69,6 +69,18 @@ std::array<double, 3> motionFrom(const JsonValue& list, size_t first) {
   return motion;
 }
 
+Turn turnFrom(const JsonValue& value) {
+  requireKnownKeys(value, {"axis", "angle", "centre"});
+  const JsonValue axis = value.member("axis"), angle = value.member("angle"), centre = value.member("centre");
+  const Turn turn{readVector(axis), angle.number(), readVector(centre)};
+  if (std::abs(turn.angle) > 0x1p16) angle.expected("a number of at most 2^16");
+  if (turn.angle != 0 && turn.axis == std::array<double, 3>{}) axis.expected("a vector that is not zero");
+  for (size_t k = 0; k < 3; ++k) {
+    if (std::abs(turn.centre[k]) > 0x1p800) centre[k].expected("a number of at most 2^800");
+  }
+  return turn;
+}
+
 Instance instanceFrom(const JsonValue& list, std::span<const std::array<double, 3>> bases) {
   const size_t count = list.size();
   if (count != 1 && count != 13) list.expected("a mesh index, alone or followed by 12 numbers");
@@ -82,7 +94,7 @@ Instance instanceFrom(const JsonValue& list, std::span<const std::array<double, 
 
 QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<const std::array<double, 3>> bases) {
   static const std::vector<std::string_view> kKnown = [] {
-    std::vector<std::string_view> known{"id", "scene", "batch", "sensor", "dir", "D", "motion", "mode"};
+    std::vector<std::string_view> known{"id", "scene", "batch", "sensor", "dir", "D", "motion", "turn", "mode"};
     for (const QueryField& field : queryFields()) known.emplace_back(field.name);
     return known;
   }();
@@ -95,13 +107,17 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
   spec.scene = query.member("scene").index(world.scenes.size(), "scenes");
   query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
   spec.setSensor(instanceFrom(query.member("sensor"), bases));
-  if (query.has("motion")) {
+  const char* const step = query.has("motion") ? "motion" : "turn";
+  if (query.has(step)) {
     for (const char* other : {"dir", "D"}) {
-      if (query.has(other)) query.member(other).refuse("expected either \"dir\" and \"D\" or \"motion\", got both");
+      if (!query.has(other)) continue;
+      query.member(other).refuse("expected either \"dir\" and \"D\" or \"" + std::string(step) + "\", got both");
     }
-    const JsonValue motion = query.member("motion");
-    if (motion.size() != 3) motion.expected("3 numbers");
-    spec.motion = motionFrom(motion, 0);
+    query.ifHas("motion", [&](const JsonValue& motion) {
+      if (motion.size() != 3) motion.expected("3 numbers");
+      spec.motion = motionFrom(motion, 0);
+    });
+    query.ifHas("turn", [&](const JsonValue& turn) { spec.turn = turnFrom(turn); });
   } else {
     const JsonValue direction = query.member("dir");
     spec.direction = readVector(direction);
@@ -113,6 +129,11 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
     }
   }
   readFields(query, world.objectCount(spec.scene), spec);
+  // A turn has no length, and goes into what it rests on in one place while it leaves it in another.
+  for (const auto& [key, isGiven] :
+       {std::pair{"speed", spec.speed.has_value()}, {"ignore_leaving", spec.ignoreLeaving}}) {
+    if (spec.turn && isGiven) query.member(key).refuse("expected none beside \"turn\"");
+  }
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();
     spec.mode = mode.guard([&] { return modeFrom(name); });
@@ -124,6 +145,7 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
 }
 
 std::string exactOnly(const Workload& workload, const QuerySpec& query) {
+  if (query.turn) return "\"turn\"";
   if (query.motion) return "\"motion\"";
   if (!workload.scenes[query.scene].motions.empty()) return "a scene with \"motions\"";
   const QueryField* const field = exactOnly(query);

@@ -94,9 +94,15 @@ std::string queryText(const QuerySpec& query) {
   object.add("scene", std::to_string(query.scene));
   object.add("batch", std::to_string(query.batch));
   object.add("sensor", instanceText(query.sensor()));
-  if (query.motion) {
-    object.add("motion", listOf(*query.motion, ",", appendNumber));
-  } else {
+  if (query.motion) object.add("motion", listOf(*query.motion, ",", appendNumber));
+  if (query.turn) {
+    JsonObject turn;
+    turn.add("axis", listOf(query.turn->axis, ",", appendNumber));
+    turn.addNumber("angle", query.turn->angle);
+    turn.add("centre", listOf(query.turn->centre, ",", appendNumber));
+    object.add("turn", turn.text());
+  }
+  if (!takesStep(query)) {
     object.add("dir", listOf(query.direction, ",", appendNumber));
     object.addNumber("D", query.distance);
   }

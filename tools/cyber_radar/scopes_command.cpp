@@ -90,7 +90,10 @@ void drawScopes(Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   Workload workload = load(options);
   // The text below needs the whole answer, and the pictures are of mode sampled.
-  workload.queries = {sampledPartOf(findQuery(workload, options))};
+  const QuerySpec& wanted = findQuery(workload, options);
+  if (wanted.turn)
+    throw InputError(options.files[0], "turn", "expected a straight motion, along which scopes look, got a turn");
+  workload.queries = {sampledPartOf(wanted)};
   workload.queries.front().anyHit = false;
   const QuerySpec& query = workload.queries.front();
   ScenePlayer player(workload);

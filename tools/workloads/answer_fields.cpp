@@ -102,13 +102,14 @@ constexpr AnswerField kFields[] = {
      "t* lies in [lo, hi], certainly. Null: t* is at least lo *or does not exist*. Contact exactly at D has t = hi = "
      "D."},
     {{{"fraction"}, kReal, kTime<&Result::fraction>, {When::always, When::step, When::always}, 32},
-     "t / D, or of the step. With `motion`, t, lo and hi are fractions times the motion's length."},
+     "t / D, or of the step. With `motion`, t, lo and hi are fractions times the motion's length; with `turn`, "
+     "fractions."},
     {{{"fraction_lo"},
       kReal,
       {[](const AnswerRow& row, size_t) { return row.fractionLo; }},
       {When::step, When::step, When::never},
       40},
-     "With `motion`: the bracket of the fraction."},
+     "With `motion` or `turn`: the bracket of the fraction."},
     {{{"fraction_hi"},
       kReal,
       {[](const AnswerRow& row, size_t) { return row.fractionHi; }},
@@ -190,8 +191,8 @@ AnswerRow::AnswerRow(const Query& query_, const Result& answer, AnswerMode mode,
                      uint64_t index_)
     : query(query_),
       result(answer),
-      fractionLo(query.motion ? answer.lo : kNull),
-      fractionHi(query.motion ? answer.hi : kNull),
+      fractionLo(takesStep(query) ? answer.lo : kNull),
+      fractionHi(takesStep(query) ? answer.hi : kNull),
       isSampled(mode == AnswerMode::sampled),
       speed(speed_),
       index(index_) {
@@ -218,7 +219,7 @@ bool has(const AnswerRow& row, When when) {
     case When::always:
       return true;
     case When::step:
-      return row.query.motion.has_value();
+      return takesStep(row.query);
     case When::near:
       return row.query.clearance > 0;
     case When::timed:

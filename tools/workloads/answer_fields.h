@@ -20,7 +20,7 @@ struct AnswerRow {
 
   const Query& query;
   Result result;                  ///< t, lo and hi are distances (radar::toDistances)
-  double fractionLo, fractionHi;  ///< of a query with a motion; else NaN
+  double fractionLo, fractionHi;  ///< if takesStep(query); else NaN
   bool isSampled;                 ///< answered in mode sampled
   std::optional<double> speed;    ///< the query's
   uint64_t index;                 ///< of the query
@@ -57,7 +57,7 @@ struct AnswerPlaces {
 
 struct AnswerMember : AnswerName, AnswerType, AnswerAccess, AnswerPlaces {
   size_t place;                  ///< in a record of a file, or beyond it: a byte
-  const char* ofStep = nullptr;  ///< the member that has a Result's number where the query has a motion
+  const char* ofStep = nullptr;  ///< the member that has a Result's number where takesStep(query)
 };
 
 struct AnswerField : AnswerMember {

@@ -144,6 +144,7 @@ QuerySpec sampledPartOf(QuerySpec query) {
   for (const QueryField& field : kFields) {
     if (!field.sampled) std::visit([&](auto member) { query.*member = kUsual.*member; }, field.member);
   }
+  query.turn.reset();
   if (query.motion) setDisplacement(query, *query.motion, Mode::sampled, false);
   return query;
 }

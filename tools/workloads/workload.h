@@ -65,6 +65,11 @@ struct QuerySpec : Query {
   void setSensor(const Instance& placed) { mesh = placed.mesh, worldFromMesh = placed.worldFromMesh; }
 };
 
+/// Whether its answer's bracket is one of fractions.
+inline bool takesStep(const Query& query) {
+  return query.motion || query.turn;
+}
+
 struct Workload {
   std::vector<MeshData> meshes;
   std::vector<SceneSpec> scenes;

@@ -24,6 +24,15 @@ enum class Mode : uint32_t {
   contact   ///< the exact search, on the device or on the CPU: never undecided, unless Query::clearance is above 0
 };
 
+/// A turn by `angle`, radians, about an axis through `centre`, which moves by Query::motion meanwhile and stays in the
+/// body; right-hand rule. At s of the step, 0 to 1, a point p of the sensor is at
+///   x(s) = centre + s motion + R(axis / |axis|, s angle) (p - centre).
+struct Turn {
+  std::array<double, 3> axis{};    ///< finite, of any length; not zero unless the angle is 0, which ignores it
+  double angle = 0;                ///< finite, at most 2^16
+  std::array<double, 3> centre{};  ///< world coordinates, up to 2^800
+};
+
 /// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
 struct Query {
   MeshId mesh = kNone;                ///< of the scene
@@ -39,6 +48,14 @@ struct Query {
   /// relative motion, and t, lo and hi are fractions of the step. If objects move, a query with a direction takes a
   /// step, too, in which the sensor moves by D; t is then the fraction times D. Relative motions round once.
   std::optional<std::array<double, 3>> motion{};
+
+  /// Mode contact, with `motion` or alone, and then without direction and distance: the sensor turns during the step.
+  /// An angle of 0 is the step alone. What is exact is the motion as stated, of the doubles given, though not its
+  /// answers: t, a fraction of the step, is lo, before which surfaces certainly have no point in common, and at hi they
+  /// certainly cross (with a clearance, are nearer). (hi - lo) times the greatest speed of the sensor past the object
+  /// is at most `tolerance`, where a contact gets deeper than that. One that does not may be undecided, as may one
+  /// within rounding of the end. Contact at the start is exact. Not with `ignoreLeaving`.
+  std::optional<Turn> turn{};
 
   /// Mode contact: counts only pairs of triangles that block, as placed at the start. A pair does not block if a plane
   /// keeps the triangles apart and the motion does not go against it: what rests on something may leave it or slide
@@ -62,8 +79,8 @@ struct Query {
   /// `skipOverlapping`, what is within the clearance without crossing stays; with `ignoreLeaving`, distances tell what
   /// blocks. What options mean together is in docs/query-file.md, "Options together".
   double clearance = 0;
-  /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
-  /// sensor's box, or of the clearance if that is longer.
+  /// With `clearance` or a turn, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest
+  /// side of the sensor's box, or of the clearance if that is longer.
   std::optional<double> tolerance{};
   /// Mode contact: lists the first contacts with this many nearest objects (Listed::hits), one per object; kAllHits:
   /// with all in reach. 1: no list.

@@ -2,8 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "math/lanes.h"
 
 namespace radar {
+
+namespace {
+
+using FloatLanes = Lanes<float>;
+
+FloatLanes fourOf(const float* values) {
+  FourFloats four;
+  std::memcpy(&four, values, sizeof(four));
+  return four;
+}
+
+}  // namespace
 
 bool staysBelow(const Vector& most, const Mesh& mesh, const Affine& m, double least) {
   Vector sizes;
@@ -34,19 +49,23 @@ double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin
 }
 
 Box tightBox(const Mesh& mesh, const Affine& m) {
+  const size_t count = mesh.vertexCount();
+  const float *px = mesh.local[0].data(), *py = mesh.local[1].data(), *pz = mesh.local[2].data();
   Box box;
   for (int row = 0; row < 3; ++row) {
-    const auto x = static_cast<float>(m[4 * row]), y = static_cast<float>(m[4 * row + 1]),
-               z = static_cast<float>(m[4 * row + 2]);
-    const float *px = mesh.local[0].data(), *py = mesh.local[1].data(), *pz = mesh.local[2].data();
-    float low = 3e38f, high = -3e38f;
-    for (uint32_t i = 0; i < mesh.vertexCount(); ++i) {
-      const float at = x * px[i] + y * py[i] + z * pz[i];
-      low = at < low ? at : low;
-      high = at > high ? at : high;
-    }
-    box.lo[row] = low + m[4 * row + 3];
-    box.hi[row] = high + m[4 * row + 3];
+    const FloatLanes x = static_cast<float>(m[4 * row]), y = static_cast<float>(m[4 * row + 1]),
+                     z = static_cast<float>(m[4 * row + 2]);
+    FloatLanes low = 3e38f, high = -3e38f;
+    const auto add = [&](const FloatLanes& p, const FloatLanes& q, const FloatLanes& r) {
+      const FloatLanes at = x * p + y * q + z * r;
+      low = min(at, low);
+      high = max(at, high);
+    };
+    size_t i = 0;
+    for (; i + 4 <= count; i += 4) add(fourOf(px + i), fourOf(py + i), fourOf(pz + i));
+    for (; i < count; ++i) add(px[i], py[i], pz[i]);
+    box.lo[row] = std::min({low[0], low[1], low[2], low[3]}) + m[4 * row + 3];
+    box.hi[row] = std::max({high[0], high[1], high[2], high[3]}) + m[4 * row + 3];
   }
   return box;
 }

@@ -1,6 +1,7 @@
 // Plans of mode sampled select the objects in the sensor's way while the scene changes.
 #include <algorithm>
 
+#include "sampled/in_frame.h"
 #include "sampled/plan.h"
 #include "support/catch.h"
 #include "support/world.h"
@@ -86,4 +87,36 @@ TEST_CASE("scopes are out of range while an object is too far away for the tree"
   CHECK(planOf(scene, query).outOfRange == "range: an object has coordinates beyond 2^80");
   scene.removeObject(remote);
   CHECK(selectedBy(planOf(scene, query)) == std::vector<ObjectId>{near});
+}
+
+TEST_CASE("the box around turned vertices has the bits of the outermost, whatever the number of vertices") {
+  tools::Random random(12);
+  for (const uint32_t count : {3u, 4u, 5u, 7u, 8u, 63u, 1234u}) {
+    tools::MeshData shape;
+    for (uint32_t i = 0; i < count; ++i) {
+      for (const double x : random.inCube(10)) shape.positions.push_back(static_cast<float>(x));
+      for (const uint32_t corner : {i, (i + 1) % count, (i + 2) % count}) shape.indices.push_back(corner);
+    }
+    // The outermost vertex is a different one each time, so that each lane has it, and the rest after whole lanes.
+    for (uint32_t outermost = 0; outermost < std::min(count, 9u); ++outermost) {
+      const uint32_t vertex = count - 1 - outermost;
+      for (int k = 0; k < 3; ++k) shape.positions[3 * vertex + k] *= 8;
+      Scene scene;
+      const Mesh& mesh = scene.impl().meshes[test::add(scene, shape)];
+      const Affine m = tools::makePose(random.rotation(), {1, 2, 3}, {4, 5, 6}).m;
+      const Box box = tightBox(mesh, m);
+      for (int row = 0; row < 3; ++row) {
+        float low = 3e38f, high = -3e38f;
+        for (uint32_t i = 0; i < count; ++i) {
+          float at = static_cast<float>(m[4 * row]) * mesh.local[0][i];
+          at += static_cast<float>(m[4 * row + 1]) * mesh.local[1][i];
+          at += static_cast<float>(m[4 * row + 2]) * mesh.local[2][i];
+          low = std::min(low, at);
+          high = std::max(high, at);
+        }
+        CHECK(box.lo[row] == low + m[4 * row + 3]);
+        CHECK(box.hi[row] == high + m[4 * row + 3]);
+      }
+    }
+  }
 }

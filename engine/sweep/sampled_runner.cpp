@@ -1,15 +1,25 @@
 #include "sweep/sampled_runner.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "contact/decode.h"
 #include "gpu/api.h"
 #include "query/cancelled.h"
 #include "sampled/decode.h"
+#include "scene/parallel.h"
 
 namespace radar {
+
+namespace {
+
+// Queries whose plans take some 0.2 ms, several times what a thread takes to start.
+constexpr size_t kWorthThread = 32;
+
+}  // namespace
 
 SampledRunner::SampledRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options,
                              GpuScene& resident)
@@ -140,29 +150,51 @@ void SampledRunner::flush(Flight& flight, std::vector<Planned>& slice) {
   slice.clear();
 }
 
+std::vector<ViewPlan> SampledRunner::planFrom(const Flight& flight, size_t first) const {
+  const size_t count = std::min<size_t>(flight.queries.size() - first, device_.maxLayers);
+  const unsigned threads = std::min(threadCount(options_.cpuThreads), static_cast<unsigned>(count / kWorthThread + 1));
+  std::vector<std::optional<ViewPlan>> plans(count);
+  std::atomic<uint64_t> bytes = 0;
+  parallelFor(count, 1, threads, [&](unsigned, size_t i, size_t) {
+    throwIfStopped(flight.stop);
+    if (i > 0 && bytes > bufferBytes_) return;
+    plans[i] = planOf(flight.queries[first + i], options_.select ? Drawn::inReach : Drawn::everything);
+    Load load;
+    load.add(*plans[i]);
+    bytes += load.draws * sizeof(gpu::Draw) + load.items * sizeof(gpu::Item);
+  });
+  std::vector<ViewPlan> out;
+  out.reserve(count);
+  for (size_t i = 0; i < count && plans[i]; ++i) out.push_back(std::move(*plans[i]));
+  return out;
+}
+
 void SampledRunner::begin(Flight& flight) {
   // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
   // stays bounded however many queries there are.
   std::vector<Planned> slice;
   Load load;
-  for (size_t i = 0; i < flight.queries.size(); ++i) {
-    throwIfStopped(flight.stop);
+  for (size_t query = 0; query < flight.queries.size();) {
     const Clock::time_point start = Clock::now();
-    ViewPlan plan = planOf(flight.queries[i], options_.select ? Drawn::inReach : Drawn::everything);
+    std::vector<ViewPlan> plans = planFrom(flight, query);
     flight.addCpuTime("select", msSince(start));
-    if (plan.inReach.empty() && plan.outOfRange.empty()) {
-      flight.answers.results[i] = decodeClear();
-      continue;
-    }
-    if (std::string reason = reasonAgainst(plan); !reason.empty()) {
-      flight.answers.reasons[i] = std::move(reason);
-      continue;
-    }
-    load.add(plan);
-    slice.push_back({i, std::move(plan)});
-    if (slice.size() >= device_.maxLayers || load.draws * sizeof(gpu::Draw) > bufferBytes_ || load.items > maxItems_) {
-      flush(flight, slice);
-      load = {};
+    for (ViewPlan& plan : plans) {
+      const size_t i = query++;
+      if (plan.inReach.empty() && plan.outOfRange.empty()) {
+        flight.answers.results[i] = decodeClear();
+        continue;
+      }
+      if (std::string reason = reasonAgainst(plan); !reason.empty()) {
+        flight.answers.reasons[i] = std::move(reason);
+        continue;
+      }
+      load.add(plan);
+      slice.push_back({i, std::move(plan)});
+      if (slice.size() >= device_.maxLayers || load.draws * sizeof(gpu::Draw) > bufferBytes_ ||
+          load.items > maxItems_) {
+        flush(flight, slice);
+        load = {};
+      }
     }
   }
   flush(flight, slice);

@@ -1,5 +1,5 @@
-// Mode sampled: plans slices of a batch on the CPU and submits them in as few submissions as fit. One submission runs
-// at a time, and is decoded before the next is staged.
+// Mode sampled: plans slices of a batch on the CPU's threads and submits them in as few submissions as fit. One
+// submission runs at a time, and is decoded before the next is staged.
 #pragma once
 
 #include "sampled/submitter.h"
@@ -37,6 +37,9 @@ class SampledRunner {
   bool fits(const Load& load) const;
   std::string reasonAgainst(const ViewPlan& plan) const;
   ViewPlan planOf(const Query& query, Drawn drawn) const;
+  /// Plans of at least one query, and of as many from `first` on as a submission can hold, so that memory stays bounded
+  /// however many there are. On all threads.
+  std::vector<ViewPlan> planFrom(const Flight& flight, size_t first) const;
   void flush(Flight& flight, std::vector<Planned>& slice);
   /// Submits a part, in halves if the device's memory does not suffice.
   void submit(Flight& flight, std::span<Planned> part);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "gpu/device.h"
 #include "radar/cpu_sweeper.h"
@@ -122,6 +123,32 @@ TEST_CASE("a small budget of picture memory splits a batch and keeps its bits") 
   CHECK(whole.stats.submissions == 1);
   CHECK(differenceOf(split.results, whole.results) == "");
   CHECK(split.stats.submissions > 5);
+}
+
+TEST_CASE("however many threads select what is drawn, answers, reasons and submissions are the same") {
+  test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 2000, .sensors = 150}), 32);
+  for (const size_t i : {3u, 40u, 41u, 149u}) asked.queries[i].worldFromMesh.m[3] = 1e30;  // floats cannot hold them
+  const auto answered = [&](uint32_t threads, bool select) {
+    Sweeper sweeper(test::device(), asked.scene, {.select = select, .cpuThreads = threads});
+    // A buffer holds all draws, or those of some six queries.
+    uint32_t& limit = test::device().impl().properties.limits.maxStorageBufferRange;
+    const uint32_t before = std::exchange(limit, select ? limit : 1u << 20);
+    sweeper.run({&asked.queries[3], 1}, Mode::sampled);  // reads the limit, and draws nothing
+    limit = before;
+    return sweeper.run(asked.queries, Mode::sampled);
+  };
+  const uint32_t threads = GENERATE(2u, 5u);
+  for (const bool select : {true, false}) {
+    CAPTURE(threads, select);
+    const Answers alone = answered(1, select), shared = answered(threads, select);
+    CHECK(differenceOf(shared.results, alone.results) == "");
+    CHECK(shared.reasons == alone.reasons);
+    CHECK(alone.reasons.size() == 4);
+    CHECK(shared.stats.submissions == alone.stats.submissions);
+    CHECK(shared.stats.drawnObjects == alone.stats.drawnObjects);
+    CHECK(shared.stats.drawnTriangles == alone.stats.drawnTriangles);
+    CHECK((alone.stats.submissions > 3) == !select);
+  }
 }
 
 TEST_CASE("drawing every object gives the same bits as drawing only those in reach") {

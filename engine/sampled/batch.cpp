@@ -8,18 +8,14 @@ namespace radar {
 
 namespace {
 
-// Target number of triangles per render pass. With more, lavapipe's bins outgrow its caches: 30 dense sensors in one
-// pass were 1.5 times slower than in a pass each.
-constexpr uint64_t kPassTriangles = 8192;
 // Maximum number of layers per render pass.
 constexpr uint32_t kMaxPassLayers = 64;
 
-uint32_t layersPerPass(std::span<const ViewPlan* const> plans, bool choosesLayers) {
-  if (!choosesLayers) return 1;
+uint32_t layersPerPass(std::span<const ViewPlan* const> plans, uint32_t passTriangles) {
   uint64_t triangles = 0;
   for (const ViewPlan* plan : plans) triangles += plan->triangles;
   const uint64_t fit =
-      std::clamp<uint64_t>(kPassTriangles * plans.size() / std::max<uint64_t>(triangles, 1), 1, kMaxPassLayers);
+      std::clamp<uint64_t>(passTriangles * plans.size() / std::max<uint64_t>(triangles, 1), 1, kMaxPassLayers);
   return std::bit_floor(static_cast<uint32_t>(std::min<uint64_t>(fit, plans.size())));
 }
 
@@ -79,8 +75,9 @@ DepthPass addPass(SampledBatch& batch, std::vector<Pending>& pending, DepthPass 
 }
 
 // Packs plans of one resolution, which become the views from `firstView` on.
-void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView, bool choosesLayers) {
-  const uint32_t perPass = layersPerPass(plans, choosesLayers);
+void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView,
+               uint32_t passTriangles) {
+  const uint32_t perPass = layersPerPass(plans, passTriangles);
   const uint32_t firstLayer = batch.layers;
   std::vector<Pending> pending;
   for (uint32_t begin = 0; begin < plans.size(); begin += perPass) {
@@ -111,12 +108,12 @@ void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint
 
 }  // namespace
 
-SampledBatch packBatch(std::span<const ViewPlan* const> plans, bool choosesLayers) {
+SampledBatch packBatch(std::span<const ViewPlan* const> plans, uint32_t passTriangles) {
   SampledBatch batch;
   for (size_t begin = 0; begin < plans.size();) {
     size_t end = begin;
     while (end < plans.size() && plans[end]->view.resolution == plans[begin]->view.resolution) ++end;
-    fillClass(batch, plans.subspan(begin, end - begin), static_cast<uint32_t>(begin), choosesLayers);
+    fillClass(batch, plans.subspan(begin, end - begin), static_cast<uint32_t>(begin), passTriangles);
     begin = end;
   }
   if (!plans.empty()) batch.resolution = plans.back()->view.resolution;

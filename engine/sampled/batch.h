@@ -35,7 +35,7 @@ struct SampledBatch {
 };
 
 /// `plans`: in ascending resolution, each with at least one object in reach. Plan i becomes view i, in layer i.
-/// `choosesLayers`: see Device::Impl.
-SampledBatch packBatch(std::span<const ViewPlan* const> plans, bool choosesLayers);
+/// `passTriangles`: of a render pass, about as many as it draws; it has one layer at least.
+SampledBatch packBatch(std::span<const ViewPlan* const> plans, uint32_t passTriangles);
 
 }  // namespace radar

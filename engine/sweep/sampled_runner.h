@@ -49,6 +49,7 @@ class SampledRunner {
   const Device::Impl& device_;
   const Scene& scene_;
   const SweeperOptions options_;
+  const uint32_t passTriangles_;
   SampledSubmitter submitter_;
   uint64_t bufferBytes_;
   uint64_t maxItems_;   ///< so that item and lane fit 32 bits (gpu::Candidate)

@@ -49,6 +49,29 @@ class WatchedSubmits {
   Device::Impl& device_;
 };
 
+/// Counts render passes.
+class CountedPasses {
+ public:
+  explicit CountedPasses(Device::Impl& device) : device_(device) {
+    driver = device.vk.CmdBeginRenderPass;
+    passes = 0;
+    device.vk.CmdBeginRenderPass = [](VkCommandBuffer commands, const VkRenderPassBeginInfo* info,
+                                      VkSubpassContents contents) {
+      ++passes;
+      driver(commands, info, contents);
+    };
+  }
+  ~CountedPasses() { device_.vk.CmdBeginRenderPass = driver; }
+  CountedPasses(const CountedPasses&) = delete;
+  CountedPasses& operator=(const CountedPasses&) = delete;
+
+  inline static int passes;
+
+ private:
+  inline static PFN_vkCmdBeginRenderPass driver;
+  Device::Impl& device_;
+};
+
 }  // namespace
 
 TEST_CASE("answers in memory that had others are those of a fresh call, in either mode and on the CPU") {
@@ -149,6 +172,24 @@ TEST_CASE("however many threads select what is drawn, answers, reasons and submi
     CHECK(shared.stats.drawnTriangles == alone.stats.drawnTriangles);
     CHECK((alone.stats.submissions > 3) == !select);
   }
+}
+
+TEST_CASE("a GPU draws in few passes, whatever the triangles, and its answers have the same bits") {
+  test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 100}), 32);
+  Device::Impl& device = test::device().impl();
+  const auto answered = [&](VkPhysicalDeviceType type) {
+    Sweeper sweeper(test::device(), asked.scene);
+    const VkPhysicalDeviceType before = std::exchange(device.properties.deviceType, type);
+    sweeper.run({&asked.queries[0], 1}, Mode::sampled);  // asks what the device is
+    device.properties.deviceType = before;
+    const CountedPasses counted(device);
+    return std::pair(sweeper.run(asked.queries, Mode::sampled).results, CountedPasses::passes);
+  };
+  const auto [onCpu, manyPasses] = answered(VK_PHYSICAL_DEVICE_TYPE_CPU);
+  const auto [onGpu, fewPasses] = answered(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
+  CHECK(differenceOf(onGpu, onCpu) == "");
+  CHECK(fewPasses == (device.choosesLayers ? 4 : manyPasses));  // of up to 64 layers, for R and for M
+  CHECK(manyPasses > 20);
 }
 
 TEST_CASE("drawing every object gives the same bits as drawing only those in reach") {

@@ -48,18 +48,20 @@ void SampledRunner::Load::add(const ViewPlan& plan) {
   items += plan.items;
 }
 
+bool SampledRunner::fitsBuffers(const Load& load) const {
+  return load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_;
+}
+
 bool SampledRunner::fits(const Load& load) const {
   const uint64_t layer = 2ull * load.resolution * load.resolution * sizeof(float);
-  return load.views <= device_.maxLayers && load.views * layer <= options_.pictureBytes &&
-         load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_;
+  return load.views <= device_.maxLayers && load.views * layer <= options_.pictureBytes && fitsBuffers(load);
 }
 
 std::string SampledRunner::reasonAgainst(const ViewPlan& plan) const {
   if (!plan.outOfRange.empty()) return plan.outOfRange;
   Load load;
   load.add(plan);
-  if (load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_)
-    return {};  // too large a picture is drawn alone
+  if (fitsBuffers(load)) return {};  // too large a picture is drawn alone
   const uint64_t bytes = std::max(load.draws * sizeof(gpu::Draw), load.items * sizeof(gpu::Item));
   return "capacity: the objects in reach need a buffer of " + std::to_string(bytes) + " bytes, the device allows " +
          std::to_string(bufferBytes_);
@@ -115,7 +117,8 @@ void SampledRunner::finish(Flight& flight) {
     const SampledAnswers found = submitter_.collect(drawn_, answers.stats.stages);
     flight.deviceDone = Clock::now();
     std::vector<Result> contacts(found.contacts.begin(), found.contacts.end());
-    answers.stats.cpuPairs += decideAll(found.unresolved, {}, [&](uint32_t i, ObjectId) {
+    const Deciding how{.threads = options_.cpuThreads, .stop = flight.stop};
+    answers.stats.cpuPairs += decideAll(found.unresolved, how, [&](uint32_t i, ObjectId) {
       const Query& query = flight.queries[queries[i]];
       return OpenSearch{contacts[i], query, Translation(query)};
     });
@@ -199,8 +202,7 @@ void SampledRunner::begin(Flight& flight) {
       }
       load.add(plan);
       slice.push_back({i, std::move(plan)});
-      if (slice.size() >= device_.maxLayers || load.draws * sizeof(gpu::Draw) > bufferBytes_ ||
-          load.items > maxItems_) {
+      if (slice.size() >= device_.maxLayers || !fitsBuffers(load)) {
         flush(flight, slice);
         load = {};
       }

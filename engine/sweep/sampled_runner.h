@@ -34,6 +34,7 @@ class SampledRunner {
     void add(const ViewPlan& plan);
   };
 
+  bool fitsBuffers(const Load& load) const;
   bool fits(const Load& load) const;
   std::string reasonAgainst(const ViewPlan& plan) const;
   ViewPlan planOf(const Query& query, Drawn drawn) const;

@@ -15,10 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Seconds of work that justify another thread: the cost of waking it, warming it up and waiting for it.
-// On two virtual cores, two threads were as fast as one for 16 to 32 queries of 4 us.
-constexpr double kWorthThread = 60e-6;
-
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }

@@ -94,6 +94,9 @@ bool Worker::serve() {
 void Worker::makeSweep(Lane& lane) {
   try {
     lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, options_, copy_);
+    for (const Lane& other : lanes_) {  // what one learns, both know
+      if (other.sweep && other.sweep->router) lane.sweep->router = other.sweep->router;
+    }
   } catch (const Error& error) {
     if (!gpu::isOutOfMemory(error) || queue_.leave(number_)) throw;
     SweeperOptions onCpu = options_;
@@ -117,6 +120,9 @@ void Worker::begin(Lane& lane, Chunk chunk) {
     if (isSynced_) seenVersion_ = version;
   }
   lane.flight.emplace(lane.chunk.queries(), options_.timestamps, lane.chunk.job->stop);
+  for (Lane& each : lanes_) {
+    if (inFlight_ > 1) each.flight->isAlone = false;
+  }
   lane.sweep->begin(*lane.flight, lane.chunk.job->mode);
   lane.trace.submitted = queue_.now();
 }

@@ -19,10 +19,6 @@ namespace radar {
 
 namespace {
 
-// Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
-// the batch (docs/performance.md). On another, a submission takes the time in which a CPU answers some queries: an
-// estimate, as no such device has been measured.
-constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
 // Searches whose answers take as long to decode as a thread to wake.
 constexpr size_t kWorthThread = 2048;
 // Pairs that are left to the host: more of one search are dearer to decide than to search again.
@@ -32,11 +28,6 @@ constexpr size_t kMostDecided = 256;
 size_t mostSearchesOf(const Device::Impl& device, const SearchTuning& tuning) {
   return std::min(tunedFor(device, tuning).searches,
                   device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
-}
-
-uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
-  if (options.cpuBatch != kNone) return options.cpuBatch;
-  return device.runsOnCpu() ? kCpuBatchOnCpu : kCpuBatchElsewhere;
 }
 
 // No answer, though no list was full.
@@ -60,7 +51,8 @@ ContactRunner::ContactRunner(const gpu::Owner& owner, const Scene& scene, const 
 }
 
 bool ContactRunner::isOnCpu() const {
-  return cpuBatchOf(options_, device_) == kNone;
+  // A device that runs there itself is slower than its search, whatever the batch (docs/performance.md).
+  return options_.cpuBatch == kNone && device_.runsOnCpu();
 }
 
 void ContactRunner::begin(Flight& flight) {
@@ -93,7 +85,7 @@ void ContactRunner::abandon(Flight& flight) noexcept {
 }
 
 void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
-  if (!lost_.empty() || which.size() < cpuBatchOf(options_, device_)) {
+  if (!lost_.empty() || which.size() < flight.cpuBatch) {
     flight.left.insert(flight.left.end(), which.begin(), which.end());
     return;
   }

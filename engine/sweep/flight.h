@@ -9,6 +9,7 @@
 
 #include "contact/search_plan.h"
 #include "radar/answers.h"
+#include "sweep/batch_router.h"
 
 namespace radar {
 
@@ -32,9 +33,13 @@ struct Flight {
   std::stop_token stop;          ///< once requested, runners throw Cancelled
 
   // Mode contact.
-  std::vector<size_t> left;    ///< queries for the CPU
-  std::vector<size_t> again;   ///< queries to repeat, now that the device has room for them
-  Clock::time_point encoding;  ///< since when the next submission is being planned
+  uint32_t cpuBatch = 0;                      ///< fewer queries at once than this are for the CPU
+  std::optional<BatchRouter::Choice> choice;  ///< that a router made
+  Clock::time_point begun;                    ///< when it did
+  bool isAlone = true;                        ///< no other batch of its device was on its way meanwhile
+  std::vector<size_t> left;                   ///< queries for the CPU
+  std::vector<size_t> again;                  ///< queries to repeat, now that the device has room for them
+  Clock::time_point encoding;                 ///< since when the next submission is being planned
   // Mode sampled.
   std::vector<size_t> drawn;  ///< queries of the last submission, until it is collected
 

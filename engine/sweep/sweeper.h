@@ -11,6 +11,8 @@ struct Sweeper::Impl {
   /// the scene, while nothing is running on the device. `needsProof`: see ContactRunner.
   Impl(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
        const SearchTuning& tuning = {}, bool needsProof = true);
+  /// Sweepers of this device that come later begin with what this one has learnt.
+  ~Impl();
 
   /// Returns the error if memory does not suffice, or the device is lost: then each batch tries again, and answers as
   /// run() says.
@@ -28,6 +30,9 @@ struct Sweeper::Impl {
   void attempt(Flight& flight, const Step& step);
 
   SampledRunner& sampled();
+  /// Decides which side answers a batch of mode contact; later learns what it took.
+  void route(Flight& flight);
+  void learn(const Flight& flight);
 
   const gpu::Owner owner;
   const Device::Impl& device;
@@ -36,6 +41,9 @@ struct Sweeper::Impl {
   std::shared_ptr<GpuScene> copy;
   std::optional<SampledRunner> sampledRunner;  ///< made when first needed, since pipelines take time
   ContactRunner contactRunner;
+  /// Null if SweeperOptions::cpuBatch decides, or the device is a CPU. May be shared with other instances of the same
+  /// scene, device and thread.
+  std::shared_ptr<BatchRouter> router;
 };
 
 }  // namespace radar

@@ -87,7 +87,7 @@ std::vector<NamedOption> EngineOptions::addTo(Command& command) {
   all.push_back({"--cpu-batch", command
                                     .option("--cpu-batch", &cpuBatch,
                                             "In mode contact, batches of fewer queries are answered on the CPU, with "
-                                            "the same answers; 0: none; else chosen from the device")
+                                            "the same answers; 0: none; else learnt from the batches")
                                     .value("N")});
   all.push_back({"--threads",
                  command.option("--threads", &threads, "Threads of the exact search on the CPU; 0: one for each core")

@@ -51,8 +51,8 @@ struct SweeperOptions {
   /// Upper bound on device memory for the pictures of one submission, bytes; larger batches are split. Memory kept
   /// between submissions is at most twice this.
   uint64_t pictureBytes = 256ull << 20;
-  /// Batches with fewer queries of mode contact are answered on the CPU, with the same answers. 0: none. kNone: 16, or
-  /// every batch if the device runs on the CPU (lavapipe), where its search is slower.
+  /// Batches with fewer queries of mode contact are answered on the CPU, with the same answers. 0: none. kNone: either
+  /// side answers those with which it was faster lately; a device that is a CPU (lavapipe) is slower, and answers none.
   uint32_t cpuBatch = kNone;
   /// Threads of the CPU's search; 0: one per core. Large changes of a scene are prepared on all cores.
   uint32_t cpuThreads = 0;

@@ -54,7 +54,7 @@ class Scene:
         needs it. Mode "reference" needs none.
     threads: of the exact search on the CPU; 0: one for each core.
     cpu_batch: in mode "contact", fewer casts than this at once are answered on the CPU, with the same answers. 0: none.
-        None: 16, or all if the device is a CPU.
+        None: those with which it was faster lately; all, if the device is a CPU.
 
     Lengths are in any one unit. Meshes are triangle soups seen from both sides: they need not be closed or convex. A
     scene pickles as its recipe: meshes, objects, names and these settings. Any thread may use a scene; calls wait for

@@ -1,6 +1,7 @@
 #include "measure/selftest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -13,14 +14,25 @@ struct Run {
   bool isDevices;
   uint64_t least, most;     ///< sizes
   double slowest, fastest;  ///< how many times as fast as the other side
+  double crossover;         ///< the size from which on it is; 0: for all that is known
 };
+
+// Where the line through both, in logarithms, has the ratio 1.
+double crossoverOf(const std::pair<const uint64_t, double>& before, const std::pair<const uint64_t, double>& after) {
+  const double way = std::log(before.second) / std::log(before.second / after.second);
+  const double from = std::log(static_cast<double>(before.first)), to = std::log(static_cast<double>(after.first));
+  return std::exp(from + way * (to - from));
+}
 
 std::vector<Run> runsOf(const std::map<uint64_t, double>& times) {
   std::vector<Run> runs;
-  for (const auto& [size, cpuOverDevice] : times) {
+  for (auto it = times.begin(); it != times.end(); ++it) {
+    const auto& [size, cpuOverDevice] = *it;
     const bool isDevices = cpuOverDevice > 1;
     const double factor = isDevices ? cpuOverDevice : 1 / cpuOverDevice;
-    if (runs.empty() || runs.back().isDevices != isDevices) runs.push_back({isDevices, size, size, factor, factor});
+    if (runs.empty() || runs.back().isDevices != isDevices) {
+      runs.push_back({isDevices, size, size, factor, factor, runs.empty() ? 0 : crossoverOf(*std::prev(it), *it)});
+    }
     Run& run = runs.back();
     run.most = size;
     run.slowest = std::min(run.slowest, factor);
@@ -29,7 +41,7 @@ std::vector<Run> runsOf(const std::map<uint64_t, double>& times) {
   return runs;
 }
 
-// Who is faster in batches of which size, by the table of part throughput: a line for each run.
+// Who is faster in batches of which size, and where that changes, by the table of part throughput: a line for each run.
 Json raceLines(const Json& throughput) {
   std::map<std::pair<uint32_t, std::string>, std::map<uint64_t, double>> races;
   for (const Json& row : throughput) races[{row["device"], row["workload"]}][row["batch"]] = row["cpu_over_device"];
@@ -37,15 +49,13 @@ Json raceLines(const Json& throughput) {
   for (const auto& [race, times] : races) {
     const std::vector<Run> runs = runsOf(times);
     for (const Run& run : runs) {
-      const bool isFirst = &run == &runs.front(), isLast = &run == &runs.back();
       std::string line =
           "device " + std::to_string(race.first) + ", " + race.second + ", batches of " + std::to_string(run.least);
       if (run.most != run.least) line += " to " + std::to_string(run.most);
       line += std::string(": the ") + (run.isDevices ? "device" : "CPU") + " is " + print("%.3g", run.slowest);
       if (run.most != run.least) line += " to " + print("%.3g", run.fastest);
       line += " times as fast";
-      if (isLast && run.isDevices) line += ": set --cpu-batch " + std::to_string(isFirst ? 0 : run.least);
-      if (isLast && isFirst && !run.isDevices) line += ": set --mode reference";
+      if (run.crossover > 0) line += print(", from some %.0f on", run.crossover);
       lines.push_back(line);
     }
   }

@@ -45,7 +45,7 @@ void runSelftest(Json& report, double minutes, const std::function<void()>& onCh
 
 /// Sums up the parts: sets "answers_checked", "answers_wrong", "right", which is false until all parts have ended, and
 /// "verdict"; and "findings": what differs from the CPU's answers, and in which of a device's stages; or if nothing
-/// does, in batches of which size the CPU or the device is faster, by how much, and what to set.
+/// does, in batches of which size the CPU or the device is faster, by how much, and where that changes.
 void conclude(Json& report);
 
 }  // namespace radar::tools

@@ -19,6 +19,17 @@ constexpr uint32_t kDistinct = 16'384;  // queries that are not repeated in a ba
 Workload lightWorkload() {
   return makeWorkload(Table1{.boxes = 30'000, .sensors = kDistinct, .shape = SensorShape::box});
 }
+// The light one for each kind of query that a Sweeper's choice of a side tells apart.
+Workload nearWorkload() {
+  Workload workload = lightWorkload();
+  for (QuerySpec& query : workload.queries) query.clearance = 0.1;
+  return workload;
+}
+Workload listWorkload() {
+  Workload workload = lightWorkload();
+  for (QuerySpec& query : workload.queries) query.hits = kAllHits;
+  return workload;
+}
 Workload heavyWorkload() {
   return makeWorkload(Table1{.boxes = 10'000, .sensors = kDistinct, .shape = SensorShape::teapot});
 }
@@ -257,15 +268,18 @@ bool measureExactness(std::span<const Device> devices, std::span<const uint32_t>
   }
 }
 
-// Batches of 1 to 10^6 small sensors among 30,000 boxes (light), of teapots (heavy), and of teapots that all move from
-// batch to batch (moving; D 15, the scene's changes in the time).
+// Batches of 1 to 10^6 small sensors among 30,000 boxes (light), with a clearance, with lists of all contacts, of
+// teapots (heavy), and of teapots that all move from batch to batch (moving; D 15, the scene's changes in the time).
 bool measureThroughput(std::span<const Device> devices, std::span<const uint32_t>, const Deadline& deadline,
                        Json& rows) {
-  // What one workload does not use is left to the next.
-  const Deadline first(deadline.left() / 3);
-  bool whole = measureStanding(devices[0], "light", lightWorkload(), first, rows);
-  const Deadline second(deadline.left() / 2);
-  whole &= measureStanding(devices[0], "heavy", heavyWorkload(), second, rows);
+  bool whole = true;
+  double share = 5;
+  for (const auto& [name, make] : {std::pair("light", &lightWorkload), std::pair("heavy", &heavyWorkload),
+                                   std::pair("clearance", &nearWorkload), std::pair("lists", &listWorkload)}) {
+    // What one workload does not use is left to the next.
+    const Deadline own(deadline.left() / share--);
+    whole &= measureStanding(devices[0], name, make(), own, rows);
+  }
   return measureMoving(devices[0], deadline, rows) && whole;
 }
 

@@ -156,9 +156,9 @@ void main() {
     do {
       tryLeaves(last);
       subgroupBarrier();
-      solvePairs(last);
+      solvePairs(last && leafTail == leafHead);
       subgroupBarrier();
-    } while (last && (leafTail != leafHead || pairTail != pairHead));
+    } while (leafTail - leafHead >= kLanes || (last && (leafTail != leafHead || pairTail != pairHead)));
   }
   const uint spilledNow = spill();
   if (!isFirst && subgroupElect()) {

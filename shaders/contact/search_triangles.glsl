@@ -16,49 +16,84 @@ void pushLeaves(bool has, uint linkA, uint linkB, float gap) {
   leafTail += subgroupBallotBitCount(who);
 }
 
-void pushPair(bool has, uint slotA, uint slotB, uint objectB, uint sensorA) {
+void pushPair(bool has, uint slotA, uint slotB, uint objectB, uint sensorA, float gap) {
   const uvec4 who = subgroupBallot(has);
-  if (has) queued[pairs + (pairTail + rankOf(who)) % kQueue].pair = uvec4(slotA, slotB, objectB, sensorA);
+  if (has) queued[pairs + (pairTail + rankOf(who)) % kQueue] = QueuedPair(uvec4(slotA, slotB, objectB, sensorA), gap);
   pairTail += subgroupBallotBitCount(who);
+}
+
+// What a lane takes from a queue, and what limitOf() was then.
+struct Taken {
+  bool has;
+  QueuedPair entry;
+  float limit;
+};
+
+// Takes entries that may still count from the head of a queue, one a lane, and drops those before them that do not. `all`: takes
+// them even if there are too few for all lanes.
+Taken take(uint queue, inout uint head, uint tail, bool all) {
+  Taken taken = Taken(false, QueuedPair(uvec4(0), 0.0), 0.0);
+  uint missing = kLanes;
+  ++work;
+  while (missing != 0 && head != tail) {
+    ++work;
+    const uint at = head + rankOf(subgroupBallot(!taken.has));
+    if (!taken.has && at < tail) {
+      taken.entry = queued[queue + at % kQueue];
+      taken.limit = limitOf(taken.entry.pair.w, taken.entry.pair.z);
+      taken.has = taken.entry.gap <= taken.limit;
+    }
+    head = min(head + missing, tail);
+    missing = countOf(!taken.has);
+  }
+  if (missing != 0 && !all) {
+    subgroupBarrier();
+    const uvec4 who = subgroupBallot(taken.has);
+    head -= subgroupBallotBitCount(who);
+    if (taken.has) queued[queue + (head + rankOf(who)) % kQueue] = taken.entry;
+    taken.has = false;
+  }
+  return taken;
 }
 
 RADAR_EXCHANGE(PlacedTriangle)
 
-// Tests the pairs of triangles, up to two per leaf, and queues those that may meet. `all`: until no leaf is left.
+// Tests the pairs of triangles of one pair of leaves a lane, up to two per leaf, and queues those that may meet, the first to meet
+// first.
 void tryLeaves(bool all) {
-  while ((leafTail - leafHead >= kLanes || (all && leafTail != leafHead)) && pairTail - pairHead + 4 * kLanes <= kQueue) {
-    work += kLeafIterations;
-    const uint at = leafHead + gl_SubgroupInvocationID;
-    countWork(kWorkLeafPair, at < leafTail);
-    uint meets = 0;  // bit 2 i + j: triangle i of a may meet triangle j of b
-    uvec4 leaf = uvec4(0);
-    if (at < leafTail) {
-      leaf = queued[leaves + at % kQueue].pair;
-      const float bound = limitOf(leaf.w, leaf.z);
-      if (queued[leaves + at % kQueue].gap <= bound) {
-        ++trianglePairs;
-        const uint slotA = leaf.x & kLinkItem, slotB = leaf.y & kLinkItem;
-        const uint endA = (leaf.x & kLinkPair) != 0 ? 1 : 0, endB = (leaf.y & kLinkPair) != 0 ? 1 : 0;
-        const PairFrame f = pairFrameOf(leaf.w, leaf.z, vertexAt(triangleAt(slotA).x), vertexAt(triangleAt(slotB).x));
-        const float clearance = clearanceOf(leaf.w);
-        PlacedTriangle a = placedTriangle(f.a, slotA), b = placedTriangle(f.b, slotB), nextA = placedTriangle(f.a, slotA + endA),
-                       nextB = placedTriangle(f.b, slotB + endB);
-        // One of the triangles changes at a time.
-        [[dont_unroll]] for (uint k = 0; k < 4; ++k) {
-          if (mayMeet(a, b, clearance, bound)) meets |= 1u << (k ^ k >> 1);
-          if (k == 1) exchange(a, nextA);
-          if (k != 1) exchange(b, nextB);
-        }
-        if (endA == 0) meets &= 3;
-        if (endB == 0) meets &= 5;
-      }
-    }
+  if ((leafTail - leafHead < kLanes && !all) || pairTail - pairHead + 4 * kLanes > kQueue) return;
+  const Taken leaf = take(leaves, leafHead, leafTail, all);
+  if (countOf(leaf.has) == 0) return;
+  work += kLeafIterations;
+  countWork(kWorkLeafPair, leaf.has);
+  // Of triangle 0 of a and triangles 0 and 1 of b, and of triangle 1 of a.
+  vec4 from = vec4(kMiss);
+  const uvec4 pair = leaf.entry.pair;
+  const uint slotA = pair.x & kLinkItem, slotB = pair.y & kLinkItem;
+  if (leaf.has) {
+    ++trianglePairs;
+    const uint endA = (pair.x & kLinkPair) != 0 ? 1 : 0, endB = (pair.y & kLinkPair) != 0 ? 1 : 0;
+    const PairFrame f = pairFrameOf(pair.w, pair.z, vertexAt(triangleAt(slotA).x), vertexAt(triangleAt(slotB).x));
+    const float clearance = clearanceOf(pair.w);
+    PlacedTriangle a = placedTriangle(f.a, slotA), b = placedTriangle(f.b, slotB), nextA = placedTriangle(f.a, slotA + endA),
+                   nextB = placedTriangle(f.b, slotB + endB);
+    // One of the triangles changes at a time.
     [[dont_unroll]] for (uint k = 0; k < 4; ++k) {
-      pushPair((meets >> k & 1) != 0, (leaf.x & kLinkItem) + (k >> 1), (leaf.y & kLinkItem) + (k & 1), leaf.z, leaf.w);
+      const float at = meetsFrom(a, b, clearance, leaf.limit);
+      from = mix(from, vec4(at), equal(uvec4(0, 1, 3, 2), uvec4(k)));
+      if (k == 1) exchange(a, nextA);
+      if (k != 1) exchange(b, nextB);
     }
-    meet();
-    leafHead = min(leafHead + kLanes, leafTail);
+    if (endA == 0) from.zw = vec2(kMiss);
+    if (endB == 0) from.yw = vec2(kMiss);
   }
+  [[dont_unroll]] for (uint k = 0; k < 4; ++k) {
+    const float next = min(min(from.x, from.y), min(from.z, from.w));
+    const uint which = next == from.x ? 0 : next == from.y ? 1 : next == from.z ? 2 : 3;
+    pushPair(next < kMiss, slotA + (which >> 1), slotB + (which & 1), pair.z, pair.w, next);
+    from = mix(from, vec4(kMiss), equal(uvec4(0, 1, 2, 3), uvec4(which)));
+  }
+  meet();
 }
 
 void keepCandidate(bool keeps, uvec4 pair, float low, uint feature) {
@@ -79,21 +114,21 @@ void keepCandidate(bool keeps, uvec4 pair, float low, uint feature) {
 // Solves pairs in float: lowers the upper bound of first contact, and keeps the pairs that may be first as candidates.
 void solvePairs(bool all) {
   while (pairTail - pairHead >= kLanes || (all && pairTail != pairHead)) {
+    const Taken taken = take(pairs, pairHead, pairTail, all);
+    if (countOf(taken.has) == 0) break;
     work += kSolveIterations;
-    const uint at = pairHead + gl_SubgroupInvocationID;
-    countWork(kWorkSolve, at < pairTail);
+    countWork(kWorkSolve, taken.has);
+    const uvec4 pair = taken.entry.pair;
     bool keeps = false;
     float low = 0.0;
     uint feature = kNobody;
-    uvec4 pair = uvec4(0);
-    if (at < pairTail) {
-      pair = queued[pairs + at % kQueue].pair;
+    if (taken.has) {
       const PairFrame f = pairFrameOf(pair.w, pair.z, vertexAt(triangleAt(pair.x).x), vertexAt(triangleAt(pair.y).x));
       const PlacedTriangle a = placedTriangle(f.a, pair.x), b = placedTriangle(f.b, pair.y);
       const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
       low = max(min(firstOf(m), m.unknown), 0.0);
       feature = m.feature;
-      float bound = limitOf(pair.w, pair.z);
+      float bound = taken.limit;
       // A subnormal number might be flushed to 0 later.
       float by = m.ahead ? max(lastOf(m), 1e-37) : kMiss;
       bool isOver = m.isOver;
@@ -116,6 +151,5 @@ void solvePairs(bool all) {
     }
     meet();
     keepCandidate(keeps, pair, low, feature);
-    pairHead = min(pairHead + kLanes, pairTail);
   }
 }

@@ -96,9 +96,10 @@ struct Face {
   BoundedFloat area;
 };
 
-// Whether the other triangle certainly stays beyond the face's plane until `limit`, or is behind it. `gaps` lead from the
-// sensor's triangle to the scene's; one of their ends is a corner of the other triangle.
-bool planeKeepsApart(Face face, vec3 gaps[3], float error, float clearance, float limit) {
+// How long the other triangle certainly stays beyond the face's plane: kMiss if until `limit`, or if it is behind it; no more than
+// 0 if that is not known. `gaps` lead from the sensor's triangle to the scene's; one of their ends is a corner of the other
+// triangle.
+float beyondUntil(Face face, vec3 gaps[3], float error, float clearance, float limit) {
   const vec3 x = face.x, y = face.y, g0 = gaps[0], g1 = gaps[1], g2 = gaps[2], n = cross(x, y);
   const float turn = float(signOf(face.area));
   const float h0 = turn * dot(g0, n), h1 = turn * dot(g1, n), h2 = turn * dot(g2, n);
@@ -107,17 +108,23 @@ bool planeKeepsApart(Face face, vec3 gaps[3], float error, float clearance, floa
                        12.0 * kUlp * g * nx * ny + kFlushed * (6.0 + 6.0 * g) +
                        clearance * (norm1(n) + 2.0001 * error * (nx + ny + 3.0 * error) + 16.0 * kUlp * nx * ny);
   const float reached = 1.00001 * limit * (abs(face.area.value) + face.area.error) + margin;
-  return turn != 0.0 && (min(h0, min(h1, h2)) > reached || max(h0, max(h1, h2)) < -margin);
+  const float perTime = 1.00001 * (abs(face.area.value) + face.area.error);
+  const float least = min(h0, min(h1, h2));
+  // So that the quotient is not too large, either.
+  const bool never = least > reached || max(h0, max(h1, h2)) < -margin;
+  return turn == 0.0 ? 0.0 : never ? kMiss : (least - margin) / perTime;
 }
 
-// Whether a pair may meet, or come as near as the clearance, at or before `limit`. Cheap; false is certain.
-bool mayMeet(PlacedTriangle a, PlacedTriangle b, float clearance, float limit) {
+// When a pair may meet first, or come as near as the clearance: not before that, which is at least 0; kMiss if not at or before
+// `limit`. Cheap.
+float meetsFrom(PlacedTriangle a, PlacedTriangle b, float clearance, float limit) {
   const float error = differenceError(a, b), room = error + clearance;
   const vec3 a0 = a.corners[0], a1 = a.corners[1], a2 = a.corners[2], b0 = b.corners[0], b1 = b.corners[1], b2 = b.corners[2];
   const vec3 lowA = min(a0, min(a1, a2)), highA = max(a0, max(a1, a2)), lowB = min(b0, min(b1, b2)), highB = max(b0, max(b1, b2));
   // Comparisons are exact, and `error` already exceeds what rounding costs the sums with `room`.
+  const float between = lowB.z - highA.z - room;
   const bool near = all(lessThanEqual(lowA.xy, highB.xy + room)) && all(lessThanEqual(lowB.xy, highA.xy + room)) &&
-                    highB.z + room >= lowA.z && lowB.z - highA.z - room <= limit;
+                    highB.z + room >= lowA.z && between <= limit;
   const Face faceA = Face(a1 - a0, a2 - a0, faceOf(a1 - a0, a2 - a0, error)),
              faceB = Face(b1 - b0, b2 - b0, faceOf(b1 - b0, b2 - b0, error));
   const float turnA = float(signOf(faceA.area)), turnB = float(signOf(faceB.area));
@@ -127,6 +134,7 @@ bool mayMeet(PlacedTriangle a, PlacedTriangle b, float clearance, float limit) {
                      edgeSeparates(b0.xy, b1.xy, turnB, a, error, clearance) ||
                      edgeSeparates(b1.xy, b2.xy, turnB, a, error, clearance) ||
                      edgeSeparates(b2.xy, b0.xy, turnB, a, error, clearance);
-  return near && !apart && !planeKeepsApart(faceA, vec3[3](b0 - a0, b1 - a0, b2 - a0), error, clearance, limit) &&
-         !planeKeepsApart(faceB, vec3[3](b0 - a0, b0 - a1, b0 - a2), error, clearance, limit);
+  const float beyondA = beyondUntil(faceA, vec3[3](b0 - a0, b1 - a0, b2 - a0), error, clearance, limit),
+              beyondB = beyondUntil(faceB, vec3[3](b0 - a0, b0 - a1, b0 - a2), error, clearance, limit);
+  return near && !apart ? max(max(between, 0.0), max(beyondA, beyondB)) : kMiss;
 }

@@ -44,12 +44,12 @@ void main() {
   found.cornersB = b.corners;
   found.errorA = a.error;
   found.errorB = b.error;
-  found.mayMeet = mayMeet(a, b, 0.0, t.limit) ? 1 : 0;
+  found.from = meetsFrom(a, b, 0.0, t.limit);
   const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
   found.pairGap = m.isOver ? kMiss : max(min(firstOf(m), m.unknown), 0.0);
   clearance = t.clearance;
   found.gapNear = approachOf(meshPairOf(t.sensor, t.object), nodeA, nodeB, t.nearLimit).gap;
-  found.mayComeNear = mayMeet(a, b, clearance, t.nearLimit) ? 1 : 0;
+  found.nearFrom = meetsFrom(a, b, clearance, t.nearLimit);
   const WithinClearance within = withinClearance(a, b, clearance, t.limit);
   found.nearLow = within.low;
   found.nearBy = within.by;

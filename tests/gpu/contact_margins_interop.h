@@ -30,12 +30,12 @@ struct PairBounds {
   Point cornersB[3];
   float gap;  // of the nodes
   float boxGap, boxEnd;
-  uint mayMeet;   // of the triangles
+  float from;     // of the triangles
   float pairGap;  // of the triangles, once solved
   uint inRange;
   // With the clearance.
   float gapNear;     // of the nodes
-  uint mayComeNear;  // of the triangles
+  float nearFrom;    // of the triangles
   float nearLow, nearBy;
 };
 

@@ -282,7 +282,7 @@ void Margins::check() {
             {test::kSlotPairBounds, answers}});
   });
 
-  uint32_t inRange = 0, tight = 0, certainlyNear = 0, tightlyNear = 0;
+  uint32_t inRange = 0, tight = 0, tightFrom = 0, certainlyNear = 0, tightlyNear = 0;
   Real closest = 0;  // the largest error, as a fraction of its bound
   for (uint32_t i = 0; i < count; ++i) {
     const PairBounds& found = answers.mapped()[i];
@@ -299,13 +299,14 @@ void Margins::check() {
     CHECK(found.gap <= contact);
     tight += found.gap > 0.99L * contact;
     // Triangles.
-    CHECK(found.mayMeet == 1);
+    CHECK(found.from <= contact);
+    tightFrom += found.from > 0.99L * contact;
     CHECK(found.pairGap <= contact);
     if (c.nearing && !std::isinf(c.nearing->hi)) {
       const Real from = c.nearing->lo * scale, by = touches[i].nearLimit;
       CAPTURE(c.clearance, double(from), double(by), found.nearLow, found.nearBy);
       CHECK(found.gapNear <= by);
-      CHECK(found.mayComeNear == 1);
+      CHECK(found.nearFrom <= by);
       CHECK(found.nearLow <= by);
       CHECK(found.nearBy >= from);
       certainlyNear += found.nearBy < 1e30f;
@@ -327,6 +328,7 @@ void Margins::check() {
   }
   CHECK(inRange > count / 2);
   CHECK(tight > count / 50);
+  CHECK(tightFrom > count / 50);
   CHECK(certainlyNear > inRange / 2);
   CHECK(tightlyNear > certainlyNear / 2);
   CHECK(closest > 0.01);

@@ -2,7 +2,7 @@
 from dataclasses import replace
 from fractions import Fraction
 
-from claims import Claim, Inequality, Rule, at_most
+from claims import Claim, Inequality, Rule, at_most, without_flushing
 from evaluator import UNKNOWN, Evaluator, Vector
 from polynomial import Polynomial, divided, total
 from reader import SourceError, Sources
@@ -100,9 +100,11 @@ def edge_separates(sources):
         yield Inequality(f"corner {i} beyond the edge", margin.least, need, [FLUSHING])
 
 
-def plane_keeps_apart(sources):
+def beyond_until(sources):
     """h > reached implies that the exact height is above limit |area| + clearance |n|, and h < -margin that it is below
-    -clearance |n|.
+    -clearance |n|. Else (h - margin) / perTime times |area| is at most the exact height less clearance |n|: as computed
+    the quotient is at most (h - margin) (1 + unit) (1 + division) / perTime, or not positive, and perTime pays for
+    both roundings. perTime is not flushed: the area exceeds its error, which holds 4 kFlushed.
 
     n as computed separates as well as the exact one, where flushing is concerned: what it takes from n is multiplied by
     edges only. If a test passes, g |n| > margin, which holds 6 kFlushed g and clearance (|n| - 9 flushed). So the
@@ -115,20 +117,25 @@ def plane_keeps_apart(sources):
 
     for i in range(3):
         names = {"n": name_normal}
-        evaluator = Evaluator(sources, DEVICE_FLOATS, contracts={"signOf": SIGN}, names=names)
+        names["perTime"] = plain("w", divides=True)
+        assumptions = {"turn == 0.0": False, "never": False}
+        evaluator = Evaluator(sources, DEVICE_FLOATS, contracts={"signOf": SIGN}, names=names, assumptions=assumptions)
         area = {"type": "BoundedFloat", "value": given("t", normal=True), "error": positive("b")}
         gaps = [difference(f"g{k}", counts=k == i) for k in range(3)]
         face = {"type": "Face", "x": difference("x"), "y": difference("y"), "area": area}
-        evaluator.call("planeKeepsApart", face, gaps, positive("E"), positive("c"), positive("l"))
+        evaluator.call("beyondUntil", face, gaps, positive("E"), positive("c"), positive("l"))
         n, h, margin, reached = (evaluator.variables[name] for name in ("n", f"h{i}", "margin", "reached"))
         length = total(symbol(f"n{k}") + c.error.without("flushed") for k, c in enumerate(n))
         gap = total(symbol(f"g{i}{axis}") for axis in AXES)
         rules = [Rule(("c", "flushed"), _FLUSHED * Fraction(10001, 10000) * gap)] + EDGES + FLUSHING
         rules += at_most({f"n{k}": c.size for k, c in enumerate(n)})
         behind = h.error + symbol("c") * length
-        beyond = behind + symbol("l") * (symbol("t") + symbol("b"))
+        area = symbol("t") + symbol("b")
+        beyond = behind + symbol("l") * area
         yield Inequality(f"height {i} behind the plane", margin.least, behind, [rules])
         yield Inequality(f"height {i} beyond the plane", reached.least, beyond, [rules])
+        (per_time,) = evaluator.values["perTime"]
+        yield Inequality("area", per_time.least, area * (1 + UNIT) * (1 + DEVICE_FLOATS.division), [without_flushing])
 
 
 def frame_of(sources, texel, apart, **conditions):
@@ -196,7 +203,7 @@ def corner_error(sources):
 
 
 def boxes(sources):
-    """A comparison of boxes that drops a pair is right, since E is twice what the corners' errors need.
+    """A comparison of boxes that drops a pair is right, and so is the time between them, since E is twice what the corners' errors need.
 
     a and b bound coordinates; the errors of corners are at least 23 kUnit of them. Where a pair is dropped, the
     clearance is at most the distance of the boxes.
@@ -212,13 +219,14 @@ def boxes(sources):
         own = known(error, nonnegative=True, normal=True)
         return {"type": "PlacedTriangle", "error": own, "corners": [Vector([Number(size, error)] * 3)] * 3}
 
-    contracts = {"faceOf": UNKNOWN, "signOf": SIGN, "edgeSeparates": UNKNOWN, "planeKeepsApart": UNKNOWN}
+    contracts = {"faceOf": UNKNOWN, "signOf": SIGN, "edgeSeparates": UNKNOWN, "beyondUntil": exactly(0)}
     # As computed, E is exact.
     names = {"error": lambda e: Number(e.size, ZERO, e.least, nonnegative=True, normal=True)}
-    evaluator = Evaluator(sources, DEVICE_FLOATS, contracts=contracts, names=names)
+    assumptions = {"near && !apart": True}
+    evaluator = Evaluator(sources, DEVICE_FLOATS, contracts=contracts, names=names, assumptions=assumptions)
     a, b = symbol("a"), symbol("b")
     triangles = triangle_of(a, symbol("A")), triangle_of(b, symbol("B"))
-    evaluator.call("mayMeet", *triangles, positive("c"), positive("l"))
+    evaluator.call("meetsFrom", *triangles, positive("c"), positive("l"))
     # Each error is 1e-30 at least.
     least = (symbol("A") + symbol("B")) * (DEVICE_FLOATS.flushed * 10**30)
     rules = at_most({"c": (a + b) * (1 + Fraction(1, 10**6)), "flushed": least})
@@ -292,7 +300,7 @@ FLUSHED_CORNER = [("pairFrameOf", text) for text in ("1e-30 + slack", "abs(apart
 EDGE = ["6.0 * kUlp", "1.0001 * (error", "4.0 * kFlushed"]
 PLANE = ["12.0 * kUlp", "1.0001 * given", "6.0 + 6.0 * g", "6.0 * g"]
 QUOTIENT = ["8.0 * kUlp", "1.0001 + 8.0", "4.0 * kFlushed"]
-APART = ["12.0 * kUlp", "1.0001 * error", *PLANE[2:], "16.0 * kUlp", "2.0001 * error", "1.00001 * limit"]
+APART = ["12.0 * kUlp", "1.0001 * error", *PLANE[2:], "16.0 * kUlp", "2.0001 * error", "1.00001 * limit", "1.00001 * (abs"]
 
 
 def claims():
@@ -310,5 +318,5 @@ def claims():
         Claim("gap . (x cross y)", "planeOf", PLANE, FILES, plane_of),
         Claim("quotient of bounded numbers", "quotientOf", QUOTIENT, FILES, quotient_of),
         Claim("side of an edge", "edgeSeparates", EDGE, FILES, edge_separates),
-        Claim("side of a plane", "planeKeepsApart", APART, FILES, plane_keeps_apart),
+        Claim("time beyond a plane", "beyondUntil", APART, FILES, beyond_until),
     ]

@@ -28,7 +28,7 @@ struct SearchTuning {
   uint32_t stack = 0;        ///< entries per lane; at least 4
   uint32_t objectSteps = 0;  ///< nodes of the tree over objects that a lane tests before the queues are looked at
   uint32_t nodeSteps = 0;    ///< likewise pairs of nodes of meshes
-  uint32_t few = 0;          ///< fewer lanes than this do not go on in such a loop while others could find work
+  uint32_t few = 0;          ///< fewer lanes (over objects, than half of this) leave such a loop to find work
   uint32_t leafBatch = 0;    ///< pairs of leaves that wait before they are tested
   bool countsWork = false;   ///< SearchCounts::done and steps
   /// The time, in place of the machine's: then the device is hurried (Pace), even if it runs on the CPU.

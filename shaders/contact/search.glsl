@@ -31,7 +31,8 @@ layout(constant_id = 3) const bool kCountsWork = false;
 // Iterations of a loop over nodes before the queues are checked.
 layout(constant_id = 4) const uint kObjectSteps = 16;
 layout(constant_id = 5) const uint kNodeSteps = 24;
-// A loop goes on only if at least this many lanes have work in it; otherwise all lanes leave it to fetch work.
+// A loop goes on only if at least this many lanes have work in it; otherwise all lanes leave it to fetch work. Half as many go on
+// looking for objects: a step takes a quarter of the instructions with which all lanes wait while some enter theirs.
 layout(constant_id = 6) const uint kFew = 16;
 // Number of leaf pairs from which on their triangles are tested.
 layout(constant_id = 7) const uint kLeafBatch = 64;

@@ -10,30 +10,40 @@ uint findObjects(uint named) {
   ++work;
   const SensorBox box = sensorBoxOf(search);
   const float scale = scaleOf(search), most = limit * unscaleOf(search);
+  // The node to visit next, link and gap, if it `has` one: that need not wait on the stack.
+  uvec2 next = uvec2(0);
+  bool has = false;
   [[dont_unroll]] for (uint step = 0; step < kObjectSteps; ++step) {
-    const bool searching =
-        named == kNobody && current.x == kNobody && depth > 0 && depth == objectDepth && depth < allowed;
+    const bool searching = named == kNobody && current.x == kNobody && (has || (depth > 0 && depth == objectDepth)) &&
+                           depth + uint(has) < allowed;
     const uint count = countOf(searching);
-    if (count == 0 || (count < kFew && step > 0)) break;
+    if (count == 0 || (count < (kFew + 1) / 2 && step > 0)) break;
     ++work;
     countWork(kWorkObjectNode, searching);
     if (searching) {
-      const uvec3 entry = stack[--depth];
-      const bool near = uintBitsToFloat(entry.z) <= limit, leaf = isLeaf(entry.y);
-      if (near && leaf && (entry.y & kLinkItem) <= least) named = entry.y & kLinkItem;
-      const int t = near && !leaf ? int(2 * entry.y) : 0;
-      const uvec4 x0 = texelFetch(objectNodeTexels, t), x1 = texelFetch(objectNodeTexels, t + 2);
-      const vec2 at0 = meetsBox(box, uintBitsToFloat(x0), uintBitsToFloat(texelFetch(objectNodeTexels, t + 1))),
-                 at1 = meetsBox(box, uintBitsToFloat(x1), uintBitsToFloat(texelFetch(objectNodeTexels, t + 3)));
-      const bool meets0 = near && !leaf && at0.x <= at0.y && at0.x <= most, meets1 = near && !leaf && at1.x <= at1.y && at1.x <= most;
-      const bool swap = meets1 && (!meets0 || at1.x < at0.x);
-      const uvec3 entry0 = uvec3(kNobody, x0.w, floatBitsToUint(at0.x * scale)),
-                  entry1 = uvec3(kNobody, x1.w, floatBitsToUint(at1.x * scale));
-      if (meets0 && meets1) stack[depth++] = swap ? entry0 : entry1;
-      if (meets0 || meets1) stack[depth++] = swap ? entry1 : entry0;
+      if (!has) next = stack[--depth].yz;
+      has = uintBitsToFloat(next.y) <= limit;
+      if (has && !isLeaf(next.x)) {
+        const int t = int(2 * next.x);
+        const uvec4 x0 = texelFetch(objectNodeTexels, t), x1 = texelFetch(objectNodeTexels, t + 2);
+        const vec2 at0 = meetsBox(box, uintBitsToFloat(x0), uintBitsToFloat(texelFetch(objectNodeTexels, t + 1))),
+                   at1 = meetsBox(box, uintBitsToFloat(x1), uintBitsToFloat(texelFetch(objectNodeTexels, t + 3)));
+        const bool meets0 = at0.x <= at0.y && at0.x <= most, meets1 = at1.x <= at1.y && at1.x <= most;
+        const bool swap = meets1 && (!meets0 || at1.x < at0.x);
+        const uvec2 entry0 = uvec2(x0.w, floatBitsToUint(at0.x * scale)), entry1 = uvec2(x1.w, floatBitsToUint(at1.x * scale));
+        if (meets0 && meets1) stack[depth++] = uvec3(kNobody, swap ? entry0 : entry1);
+        next = swap ? entry1 : entry0;
+        has = meets0 || meets1;
+      }
+      if (has && isLeaf(next.x)) {
+        if ((next.x & kLinkItem) <= least) named = next.x & kLinkItem;
+        has = false;
+      }
       objectDepth = depth;
     }
   }
+  if (has) stack[depth++] = uvec3(kNobody, next);
+  if (has) objectDepth = depth;
   return named;
 }
 

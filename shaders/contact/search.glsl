@@ -122,15 +122,15 @@ void main() {
     counts.broken = kBrokenSubgroups;
     return;
   }
-  const uint count = counts.rounds[push.round].tasks;
-  if (workgroupIndex() * kLanes >= count) return;
+  taskCount = counts.rounds[push.round].tasks;
+  if (workgroupIndex() * kLanes >= taskCount) return;
   // A workgroup goes on only while there is room for all that it may have to spill. The first one always has its own.
   const bool isFirst = workgroupIndex() == 0;
   const uint most = (kStack + 1) * kLanes;
-  room = max(push.taskCapacity - count, most) - most;
+  room = max(push.taskCapacity - taskCount, most) - most;
   allowed = isFirst ? kStack : min(kStack, kEntries);
   if (!isFirst && !setAside(allowed + 1)) return;
-  const uint budget = count < push.width ? min(push.budget, kSplitBudget) : push.budget;
+  const uint budget = taskCount < push.width ? min(push.budget, kSplitBudget) : push.budget;
   leaves = 2 * kQueue * workgroupIndex();
   pairs = leaves + kQueue;
   for (uint what = 0; kCountsWork && what < kWorks; ++what) done[what] = steps[what] = 0;

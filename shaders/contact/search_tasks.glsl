@@ -6,6 +6,7 @@ const uint kEntries = 8;
 shared SearchTask gifts[kLanes];  // from lanes with several entries to idle lanes
 
 // The same in all lanes.
+uint taskCount;  // of this round
 bool tasksLeft = true;
 uint room;     // in the list of spilled tasks, for all workgroups but the first
 uint allowed;  // entries of a lane's stack for which there is room there
@@ -43,10 +44,10 @@ uint takeTasks() {
   uint first = 0;
   if (subgroupElect() && wanted != 0) first = atomicAdd(counts.rounds[push.round].taken, wanted);
   first = subgroupBroadcastFirst(first);
-  const uint at = first + rankOf(who), count = counts.rounds[push.round].tasks;
+  const uint at = first + rankOf(who);
   uint named = kNobody;
-  if (idle && tasksLeft && at < count) named = begin(tasks[at]);
-  tasksLeft = tasksLeft && first + wanted < count;
+  if (idle && tasksLeft && at < taskCount) named = begin(tasks[at]);
+  tasksLeft = tasksLeft && first + wanted < taskCount;
   return named;
 }
 

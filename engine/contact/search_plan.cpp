@@ -61,14 +61,14 @@ gpu::Sweep sweepOf(const Query& query, const Translation& motion, uint32_t resul
 namespace {
 
 // Without excluded objects.
-Planned stateSearch(const Query& query, uint32_t result, const Scene::Impl& scene, const ObjectTree& tree,
-                    ObjectId object, gpu::StatedSearch& search, gpu::Sweep& sweep) {
+Planned stateSearch(const Query& query, uint32_t result, const Scene::Impl& scene, ObjectId object,
+                    gpu::StatedSearch& search, gpu::Sweep& sweep) {
   const Translation motion = Course(query, scene).past(object);
   sweep = sweepOf(query, motion, result);
   const Vector direction{sweep.direction[0], sweep.direction[1], sweep.direction[2]};
   if (const double size = largest(direction); !(size >= 1 && size < 2)) return Planned::outOfRange;
   search = {.mesh = query.mesh, .mask = query.mask};
-  search.start = object == kNone ? tree.nodes()[0].link : gpu::kLinkLeaf | object;
+  search.start = object == kNone ? gpu::kWholeTree : gpu::kLinkLeaf | object;
   const std::array<Vector, 3> axes = axesAlongUnit(motion.unit);
   for (int k = 0; k < 3; ++k) {
     search.across[k] = static_cast<float>(axes[0][k]);
@@ -109,7 +109,7 @@ Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& 
   if (tree.nodes().empty()) return Planned::clear;
   gpu::StatedSearch search{};
   gpu::Sweep sweep{};
-  const Planned planned = stateSearch(query, result, scene, tree, object, search, sweep);
+  const Planned planned = stateSearch(query, result, scene, object, search, sweep);
   if (planned != Planned::added) return planned;
   std::tie(search.firstExcluded, search.endExcluded) = addExcluded(excluded, query, object);
   stated.push_back(search);
@@ -167,14 +167,13 @@ SearchSource SearchList::source(const Of& of) {
 }
 
 void SearchList::write(gpu::StatedSearch* stated, gpu::Sweep* sweeps) const {
-  const ObjectTree& tree = of_.scene->objectTree();
   parallelFor(count(), kWorthThread, of_.threads, [&](unsigned, size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
       const Listed& listed = searches_[i];
       gpu::StatedSearch search;
       gpu::Sweep sweep;
-      if (stateSearch(of_.queries[listed.query], static_cast<uint32_t>(i), *of_.scene, tree, listed.object, search,
-                      sweep) != Planned::added) {
+      if (stateSearch(of_.queries[listed.query], static_cast<uint32_t>(i), *of_.scene, listed.object, search, sweep) !=
+          Planned::added) {
         search = {.start = gpu::kNobody, .flags = gpu::kSearchOutOfRange};
       }
       search.firstExcluded = listed.firstExcluded;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "embed/host_format.h"
+#include "embed/moved_tree.h"
 #include "gpu/kernel.h"
 #include "math/rounding.h"
 
@@ -104,22 +105,20 @@ std::vector<bool> markPaths(std::span<const gpu::Moved> moved, const ObjectTree&
   return marks;
 }
 
-// Adds the marked inner nodes by depth.
-void addFitNodes(MovedList& list, const std::vector<bool>& marks, const ObjectTree& tree) {
-  std::vector<uint32_t>& nodes = list.fitNodes;
-  const auto add = [&](uint32_t n) {
-    if (marks[n] && (tree.nodes()[n].link & gpu::kLinkLeaf) == 0) nodes.push_back(n);
-  };
-  if (!marks.empty()) add(0);
-  for (size_t i = 0; i < nodes.size();) {
-    const size_t end = nodes.size();
-    list.fitEnds.push_back(static_cast<uint32_t>(end));
-    for (; i < end; ++i) {
-      const uint32_t left = tree.nodes()[nodes[i]].link;
-      add(left);
-      add(left + 1);
+// The parts of the tree, of which the marked inner nodes are above.
+std::vector<uint32_t> partsOf(const ObjectTree& tree, const std::vector<bool>& marks) {
+  std::vector<uint32_t> parts, open;
+  if (!marks.empty() && marks[0]) open.push_back(0);
+  while (!open.empty()) {
+    const uint32_t node = open.back(), link = tree.nodes()[node].link;
+    open.pop_back();
+    if (!marks[node] || (link & gpu::kLinkLeaf) != 0) {
+      parts.push_back(node);
+    } else {
+      open.insert(open.end(), {link + 1, link});
     }
   }
+  return parts;
 }
 
 // The numbers that are marked, ascending.
@@ -129,6 +128,16 @@ std::vector<uint32_t> numbersOf(const std::vector<bool>& marks) {
     if (marks[i]) numbers.push_back(i);
   }
   return numbers;
+}
+
+// Ascending.
+std::vector<uint32_t> leavesOf(std::span<const gpu::Moved> moved) {
+  std::vector<uint32_t> leaves;
+  for (const gpu::Moved& object : moved) {
+    if (object.leaf != gpu::kNobody) leaves.push_back(object.leaf);
+  }
+  std::ranges::sort(leaves);
+  return leaves;
 }
 
 // Whether the groups name these objects.
@@ -187,10 +196,12 @@ void update(MovedList& list, const HostGeometry& geometry, std::span<const uint3
       if (moved.leaf != gpu::kNobody) next.unbounded.push_back(moved.object);
     }
     std::ranges::sort(next.unbounded);
-    const std::vector<bool> marks = markPaths(next.moved, tree);
-    addFitNodes(next, marks, tree);
+    next.parts = partsOf(tree, markPaths(next.moved, tree));
     overwritten.objects = numbersOf(isNamed);
-    overwritten.nodes = numbersOf(marks);
+    overwritten.nodes = leavesOf(next.moved);
+    // The root, too.
+    if (next.parts.size() > 1) overwritten.nodes.insert(overwritten.nodes.begin(), 0);
+    overwritten.built = MovedTree::nodesAbove(next.parts.size());
     next.overwritten = std::make_shared<const GpuScene::Moved>(std::move(overwritten));
   }
   list = std::move(next);

@@ -30,8 +30,8 @@ struct MovedList {
   std::vector<uint64_t> key{};  ///< with `named`, all that the rest depends on
   std::vector<ObjectId> named{};
   std::vector<gpu::Moved> moved{};
-  std::vector<ObjectId> unbounded{};            ///< without bounds: only the device knows where they are. Ascending
-  std::vector<uint32_t> fitNodes{}, fitEnds{};  ///< inner nodes above those, the root first; where each depth ends
+  std::vector<ObjectId> unbounded{};  ///< without bounds: only the device knows where they are. Ascending
+  std::vector<uint32_t> parts{};      ///< of the tree over objects: see MovedTree; none if it has none of those
   std::shared_ptr<const GpuScene::Moved> overwritten{};
   bool isUploaded = false;
 };

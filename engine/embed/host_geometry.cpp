@@ -55,17 +55,17 @@ HostGeometryPass::HostGeometryPass(const gpu::Owner& owner, const GpuScene& resi
     : device_(&owner.device()),
       resident_(resident),
       run_(owner, {shaders::kDeform, shaders::kBound, shaders::kNormalise, shaders::kMove, shaders::kRefit,
-                   shaders::kFit, shaders::kInvalidate}),
+                   shaders::kInvalidate}),
       upload_(owner),
       words_(owner, "host words", BufferDomain::device, kUploaded),
       unboundedMeshes_(owner, "unbounded meshes", BufferDomain::device, kUploaded),
-      fitNodes_(owner, "nodes to fit", BufferDomain::device, kUploaded),
       deformedMeshes_(owner, "deformed meshes", BufferDomain::device, kUploaded),
       refitNodes_(owner, "nodes to refit", BufferDomain::device, kUploaded),
       movedObjects_(owner, "moved objects", BufferDomain::device, kUploaded),
       extents_(owner, "extents", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
       readback_(owner, "recorded extents", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      violation_(owner, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+      violation_(owner, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      tree_(owner) {
   violation_.reserve(1);
 }
 
@@ -102,6 +102,7 @@ std::vector<uint32_t> HostGeometryPass::copyFrom(const HostGeometry& geometry, c
 
 void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& scene) {
   run_.begin();
+  tree_.begin();
   upload_.begin();
   const bool isEmpty = geometry.meshes.empty() && std::ranges::all_of(geometry.objects, [](const MovedObjects& moved) {
                          return countOf(moved) == 0;
@@ -132,9 +133,8 @@ void HostGeometryPass::stageDeformed() {
 
 void HostGeometryPass::stageMoved() {
   movedObjects_.reserve(moved_.moved.size());
-  fitNodes_.reserve(moved_.fitNodes.size());
   upload_.add(moved_.moved.data(), gpu::bytesOf(moved_.moved), movedObjects_);
-  upload_.add(moved_.fitNodes.data(), gpu::bytesOf(moved_.fitNodes), fitNodes_);
+  tree_.stage(moved_.parts, upload_);
 }
 
 GpuScene::Overwritten HostGeometryPass::overwritten() const {
@@ -143,7 +143,7 @@ GpuScene::Overwritten HostGeometryPass::overwritten() const {
   return overwritten;
 }
 
-void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& scene) {
+void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& scene, uint32_t searches) {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& to = resident_.buffers();
   upload_.record(commands);
@@ -153,6 +153,7 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
   commands->CmdFillBuffer(commands, violation_.get(), 0, sizeof(BoundsViolation), kNobody);
   const auto unbounded = static_cast<uint32_t>(deformed_.unbounded.size());
   if (unbounded != 0) commands->CmdFillBuffer(commands, extents_.get(), 0, VK_WHOLE_SIZE, kNobody);
+  tree_.recordFills(commands);
   transferToComputeReadWrite(commands);
   const auto meshes = static_cast<uint32_t>(deformed_.meshes.size());
   run_(commands, shaders::kDeform, deformed_.groups[kByDeform], DeformedPush{meshes, deformed_.groups[kByDeform]},
@@ -188,25 +189,18 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
   }
   computeWriteToComputeReadWrite(commands);
   // Depth by depth, the deepest first.
-  const auto forEachDepth = [&](std::span<const uint32_t> ends, const auto& run) {
-    for (size_t depth = ends.size(); depth-- > 0;) {
-      const uint32_t first = depth == 0 ? 0 : ends[depth - 1], count = ends[depth] - first;
-      run(groupsFor(count, kHostGroup), first, count);
-      computeWriteToComputeReadWrite(commands);
-    }
-  };
-  forEachDepth(deformed_.refitEnds, [&](uint32_t groups, uint32_t first, uint32_t count) {
-    run_(commands, shaders::kRefit, groups, RefitPush{first, count},
+  for (size_t depth = deformed_.refitEnds.size(); depth-- > 0;) {
+    const uint32_t first = depth == 0 ? 0 : deformed_.refitEnds[depth - 1], count = deformed_.refitEnds[depth] - first;
+    run_(commands, shaders::kRefit, groupsFor(count, kHostGroup), RefitPush{first, count},
          {{kSlotVertices, to.vertices},
           {kSlotTriangles, to.triangles},
           {kSlotMeshes, to.meshes},
           {kSlotMeshNodes, to.meshNodes},
           {kSlotRefitNodes, refitNodes_}});
-  });
-  forEachDepth(moved_.fitEnds, [&](uint32_t groups, uint32_t first, uint32_t count) {
-    run_(commands, shaders::kFit, groups, FitPush{first, count},
-         {{kSlotObjectNodes, to.objectNodes}, {kSlotFitNodes, fitNodes_}});
-  });
+    computeWriteToComputeReadWrite(commands);
+  }
+  tree_.record(commands, to.objectNodes, static_cast<uint32_t>(scene.objectTree().nodes().size()), searches);
+  computeWriteToComputeReadWrite(commands);
 }
 
 void HostGeometryPass::recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results,

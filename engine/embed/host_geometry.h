@@ -10,6 +10,7 @@
 
 #include "contact/pass.h"
 #include "embed/geometry_list.h"
+#include "embed/moved_tree.h"
 #include "gpu/kernel.h"
 #include "radar/host.h"
 #include "scene/gpu_scene.h"
@@ -36,8 +37,8 @@ class HostGeometryPass {
   }
   GpuScene::Overwritten overwritten() const;
 
-  /// Call after recording the scene's upload. The geometry is then visible to compute shaders.
-  void record(const gpu::Commands& commands, const Scene::Impl& scene);
+  /// Call after recording the scene's upload. The geometry is then visible to compute shaders, of so many searches.
+  void record(const gpu::Commands& commands, const Scene::Impl& scene, uint32_t searches);
   /// Call after recording the answers: invalidates them if anything has left its bounds. The caller records the barrier
   /// from compute shaders to their readers.
   void recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count);
@@ -64,7 +65,7 @@ class HostGeometryPass {
   const GpuScene& resident_;
   gpu::Passes run_;
   gpu::Upload upload_;
-  gpu::Array<uint32_t> words_, unboundedMeshes_, fitNodes_;
+  gpu::Array<uint32_t> words_, unboundedMeshes_;
   gpu::Array<gpu::Deformed> deformedMeshes_;
   gpu::Array<gpu::RefitNode> refitNodes_;
   gpu::Array<gpu::Moved> movedObjects_;
@@ -73,6 +74,7 @@ class HostGeometryPass {
   std::vector<Source> sources_;                 ///< of `words_`
   DeformedList deformed_;
   MovedList moved_;
+  MovedTree tree_;
 };
 
 }  // namespace radar

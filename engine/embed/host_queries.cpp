@@ -19,7 +19,7 @@ static_assert(offsetof(HostQuery, direction) == gpu::kQueryDirection &&
 // Sets what the shader needs of the tree over objects.
 void describe(const ObjectTree& tree, gpu::PlanPush& push) {
   push.inRange = tree.inRange() ? 1 : 0;
-  push.start = tree.nodes().empty() ? gpu::kNobody : tree.nodes()[0].link;
+  push.start = tree.nodes().empty() ? gpu::kNobody : gpu::kWholeTree;
 }
 
 }  // namespace

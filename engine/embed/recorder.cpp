@@ -84,7 +84,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Stage
   pass.recordUpload(commands, stage);
   if (!geometry.empty()) {
     stage("geometry");
-    geometry.record(commands, scene.impl());
+    geometry.record(commands, scene.impl(), pass.searchCount());
   }
   if (areWritten && results != 0) {
     stage("plan");

@@ -110,7 +110,7 @@ class Passes {
   void bindForDraws(const Commands& commands, const Program& program, std::initializer_list<Argument> arguments);
 
  private:
-  static constexpr size_t kMostBindings = 32;
+  static constexpr size_t kMostBindings = 34;
   struct Set {
     Program program;
     const Kernel* kernel;

@@ -47,6 +47,11 @@ void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std:
   std::set_difference(all.begin(), all.end(), less.begin(), less.end(), std::back_inserter(out));
 }
 
+// Of the tree over objects, with those that are built behind.
+size_t objectNodesOf(const ObjectTree& tree, const GpuScene::Overwritten& next) {
+  return tree.nodes().size() + movedOf(next).built;
+}
+
 // Numbers of elements, of all meshes together.
 struct Elements {
   uint64_t vertices = 0, triangles = 0, nodes = 0;
@@ -79,13 +84,13 @@ GpuScene::GpuScene(const Device::Impl& device)
       farthest_(std::make_shared<const std::vector<Vector>>()) {}
 
 // Whether no buffer that searches use need grow.
-bool GpuScene::fits(const Scene::Impl& scene) const {
+bool GpuScene::fits(const Scene::Impl& scene, const Overwritten& next) const {
   const auto [vertices, triangles, nodes] = elementsOf(scene);
   const uint64_t objects = scene.objects.size();
   return vertices <= buffers_->vertices.capacity() && triangles <= buffers_->triangles.capacity() &&
          nodes <= buffers_->meshNodes.capacity() && scene.meshes.size() <= buffers_->meshes.capacity() &&
          objects <= std::min(buffers_->objects.capacity(), buffers_->placements.capacity()) &&
-         scene.objectTree().nodes().size() <= buffers_->objectNodes.capacity();
+         objectNodesOf(scene.objectTree(), next) <= buffers_->objectNodes.capacity();
 }
 
 void GpuScene::forget() {
@@ -104,7 +109,7 @@ GpuScene::Staged GpuScene::stage(const Scene::Impl& scene, Overwritten next, Upl
   std::ranges::sort(next.meshes);
   if (seen_.scene != scene.identity) forget();
   checkWriteLimits(scene, next);
-  if (buffers_.use_count() > 1 && !fits(scene)) {
+  if (buffers_.use_count() > 1 && !fits(scene, next)) {
     buffers_ = std::make_shared<Buffers>(owner_);
     clear();
   }
@@ -206,7 +211,7 @@ void GpuScene::checkWriteLimits(const Scene::Impl& scene, const Overwritten& nex
   if (!moved.objects.empty() || !moved.standing.empty())
     checkLimit<gpu::Placement>(owner_, "placements", scene.objects.size());
   if (!moved.nodes.empty()) {
-    checkLimit<gpu::ObjectNode>(owner_, "object nodes", scene.objectTree().nodes().size());
+    checkLimit<gpu::ObjectNode>(owner_, "object nodes", objectNodesOf(scene.objectTree(), next));
   }
   if (next.meshes.empty()) return;
   const Elements elements = elementsOf(scene);
@@ -356,7 +361,7 @@ void GpuScene::stageObjects(const Scene::Impl& scene, const Overwritten& next, U
 
 void GpuScene::stageTree(const ObjectTree& tree, const Overwritten& next, Upload& upload) {
   const std::vector<gpu::ObjectNode>& nodes = tree.nodes();
-  if (buffers_->objectNodes.reserve(nodes.size())) seen_.tree = 0;
+  if (buffers_->objectNodes.reserve(objectNodesOf(tree, next))) seen_.tree = 0;
   const auto add = [&](size_t first, size_t last) {
     const VkDeviceSize size = sizeof(gpu::ObjectNode);
     upload.add(&nodes[first], size * (last - first), buffers_->objectNodes, size * first);

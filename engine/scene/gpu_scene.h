@@ -36,6 +36,7 @@ class GpuScene {
     std::vector<ObjectId> objects;   ///< with their placements; ascending
     std::vector<ObjectId> standing;  ///< of which only the placements are overwritten; ascending
     std::vector<uint32_t> nodes;     ///< of the tree over objects, ascending
+    uint32_t built = 0;              ///< nodes that are built behind those
   };
   struct Overwritten {
     std::vector<MeshId> meshes;          ///< in any order
@@ -85,7 +86,7 @@ class GpuScene {
     uint64_t uploaded = 0, uploadedIndices = 0;       ///< Mesh::version of what is in the buffers; 0: nothing
   };
   void clear();
-  bool fits(const Scene::Impl& scene) const;
+  bool fits(const Scene::Impl& scene, const Overwritten& next) const;
   void checkWriteLimits(const Scene::Impl& scene, const Overwritten& next) const;
   void placeMeshes(const Scene::Impl& scene, const Overwritten& next);
   bool placeMesh(MeshId id, const Mesh& mesh);

@@ -22,7 +22,7 @@ layout(scalar, binding = kSlotStates) writeonly restrict buffer States { SearchS
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
 layout(scalar, binding = kSlotTasks) writeonly restrict buffer Tasks { SearchTask tasks[]; };
 layout(scalar, binding = kSlotSweeps) restrict buffer Sweeps { Sweep sweeps[]; };
-// The root of the tree over objects has the box of all, about its anchor.
+// The root of the tree over objects has the box of all, about its anchor. A host that moves some has its own link there.
 layout(binding = kSlotObjectNodes) uniform utextureBuffer objectNodeTexels;
 
 layout(scalar, push_constant) uniform PushConstants { EncodePush push; };
@@ -131,6 +131,7 @@ void main() {
   }
   states[i] = SearchState(hi, flags, kNobody);
   if (flags == 0 && s.start != kNobody) {
-    tasks[atomicAdd(counts.rounds[0].tasks, 1)] = SearchTask(i, kNobody, kNobody, s.start, 0.0);
+    const uint start = s.start == kWholeTree ? texelFetch(objectNodeTexels, 0).w : s.start;
+    tasks[atomicAdd(counts.rounds[0].tasks, 1)] = SearchTask(i, kNobody, kNobody, start, 0.0);
   }
 }

@@ -32,9 +32,10 @@ struct StatedSearch {
   uint mask;
   uint firstExcluded;  // in the list of excluded objects
   uint endExcluded;
-  uint start;  // link of the tree over objects at which the search starts; kNobody: there is nothing to search
+  uint start;  // link of the tree over objects at which the search starts, or kWholeTree; kNobody: there is nothing to search
   uint flags;  // SearchState::flags, if it cannot be searched
 };
+INTEROP_CONST kWholeTree = 0;  // the root's link, whatever it is
 
 // The input of a search.
 struct Sensor {

@@ -66,6 +66,13 @@ struct RefitNode {
   uint node;  // of the mesh
 };
 
+// A part of the tree over objects that is built anew where a host moves some: the leaf of one of them, or a largest subtree in
+// which nothing moves.
+struct Part {
+  uint code;  // its place in space: neighbours share leading bits
+  uint node;
+};
+
 // A query that several searches answer together, each past one object.
 struct Gathered {
   uint query;   // index of the query's answer
@@ -86,9 +93,16 @@ struct RefitPush {
   uint first;  // in the list of nodes to refit
   uint count;
 };
+struct PartsPush {
+  uint count;  // parts
+};
+struct SortPush {
+  uint count;  // parts
+  uint run;    // that are sorted so far
+};
 struct FitPush {
-  uint first;  // in the list of nodes to fit
-  uint count;
+  uint count;  // parts
+  uint first;  // node of those built
 };
 struct MovePush {
   uint count;       // objects
@@ -100,7 +114,7 @@ struct PlanPush {
   uint stride;      // bytes from one query to the next, in the copied words
   uint countByte;   // of the number of queries, in the copied words; kNobody: all count
   uint meshes;      // in the list of meshes
-  uint start;       // link of the tree over objects at which each search starts; kNobody: there are no objects
+  uint start;       // StatedSearch::start
   uint inRange;     // floats can hold the tree over objects
 };
 struct InvalidatePush {
@@ -124,6 +138,8 @@ INTEROP_CONST kHostGroup = 64;
 INTEROP_CONST kGatherGroup = 128;
 // Triangles that an invocation of bound.comp takes.
 INTEROP_CONST kBoundRun = 16;
+// Runs that a pass of sort.comp merges.
+INTEROP_CONST kSortRuns = 8;
 
 INTEROP_SLOT(kSlotWords, 19, uint);  // words copied from the host's buffers
 INTEROP_SLOT(kSlotMoved, 24, Moved);
@@ -132,7 +148,10 @@ INTEROP_SLOT(kSlotDeformed, 31, Deformed);
 INTEROP_SLOT(kSlotRefitNodes, 26, RefitNode);  // roots first
 INTEROP_SLOT(kSlotGathered, 27, Gathered);
 INTEROP_SLOT(kSlotOrder, 29, uint);  // of searches
-INTEROP_SLOT(kSlotFitNodes, 28, uint);  // inner nodes of the tree over objects, parents first
+INTEROP_SLOT(kSlotParts, 28, uint);          // nodes
+INTEROP_SLOT(kSlotUnsorted, 20, Part);
+INTEROP_SLOT(kSlotSorted, 32, Part);
+INTEROP_SLOT(kSlotReached, 33, uint);
 INTEROP_SLOT(kSlotUnbounded, 21, uint);      // meshes
 INTEROP_SLOT(kSlotExtents, 22, Extent);      // of those
 

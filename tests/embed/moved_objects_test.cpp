@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "embed/host_world.h"
+#include "embed/object_nodes.h"
 #include "embed/on_device_scene.h"
-#include "support/buffer_words.h"
 #include "support/catch.h"
 #include "support/small_scenes.h"
 
@@ -40,12 +40,6 @@ fuzz::Outcomes outcomesOf(MovedWorld& world, int frames, const Change& change) {
 }
 const auto nothing = [](int) {};
 
-/// The nodes of the tree over objects on the device, after the host's movement.
-std::vector<gpu::ObjectNode> nodesOf(MovedWorld& world) {
-  const test::OnDeviceScene there(world.scene, world.geometry());
-  return test::elementsOf(there.copy.buffers().objectNodes, 0, world.scene.impl().objectTree().nodes().size());
-}
-
 using Real = long double;
 
 /// Whether a node's box contains a coordinate on every axis.
@@ -78,6 +72,37 @@ TEST_CASE(
   MovedWorld world(
       4000, 5, {1, 40, 100}, [](ObjectId id) { return id % 3 != 0; }, [](ObjectId id) { return id % 50 == 1; });
   checkAllAnswered(outcomesOf(world, 3, nothing), 3);
+}
+
+TEST_CASE("through many frames, in which objects move far, gather, stand, and are out of bounds, answers stay exact") {
+  MovedWorld world(700, 9, {1, 30, 40}, [](ObjectId id) { return id % 4 != 1; });
+  constexpr uint32_t kQueries =
+      8;  // so few that most recordings keep the parts of the tree over objects in their order
+  Recorder recorder(test::device(), world.scene, kRoom);
+  fuzz::Outcomes outcomes;
+  for (int frame = 0; frame < 40; ++frame) {
+    CAPTURE(frame);
+    const std::vector<Query> queries = world.queries(kQueries);
+    ask(recorder, queries, world, outcomes);
+    if (frame % 8 == 7) {
+      Transform nowhere;
+      nowhere.m[3] = frame % 16 == 7 ? NAN : 1e25;
+      const std::vector<Result> read =
+          test::execute(recorder, queries, test::HostFrame().move(world.moved[frame], nowhere).geometry());
+      for (const Result& result : read) CHECK(result.flags == Flag::bounds);
+    }
+    if (frame % 4 == 1) {
+      for (const ObjectId id : world.moved) {
+        Transform pose = world.truth.object(id).worldFromMesh;
+        for (const size_t k : {3, 7, 11}) pose.m[k] = frame % 8 == 1 ? 5 : 0x1p14 * pose.m[k];
+        if (id % (frame % 8 == 1 ? 16 : 3) == 0) world.truth.setTransform(id, pose);
+      }
+    } else if (frame % 4 != 2) {
+      world.moveAgain();
+    }
+  }
+  CHECK(outcomes.areExact());
+  CHECK(outcomes.answered == 40 * kQueries);
 }
 
 TEST_CASE("a host names moved objects by range, in each recording another one") {
@@ -125,20 +150,22 @@ TEST_CASE("the device's tree over objects contains every object where the host p
   CAPTURE(scales.size, scales.spread, scales.away);
   MovedWorld world(
       700, 3, scales, [](ObjectId id) { return id % 4 != 0; }, never);
-  const std::vector<gpu::ObjectNode> nodes = nodesOf(world);
+  const test::ObjectNodes nodes = test::OnDeviceScene(world.scene, world.geometry()).objectNodes();
+  const auto paths = test::pathsTo(nodes);
   const ObjectTree& tree = world.scene.impl().objectTree();
   REQUIRE(tree.inRange());
   size_t outside = 0;
   Real tightest = 1e30L;
   for (ObjectId id = 0; id < world.truth.objectLimit(); ++id) {
     const Object& object = world.truth.object(id);
-    const gpu::ObjectNode& leaf = nodes[tree.leafOf(id)];
+    const std::vector<uint32_t>& path = paths.at(id);
+    const gpu::ObjectNode& leaf = nodes[path.back()];
     const MeshView mesh = world.truth.mesh(object.mesh);
     for (size_t v = 0; v < mesh.positions.size() / 3; ++v) {
       const std::array<double, 3> placed = transformPoint(object.worldFromMesh, &mesh.positions[3 * v]);
       std::array<Real, 3> p;
       for (size_t k = 0; k < 3; ++k) p[k] = Real(placed[k]) - Real(tree.anchor()[k]);
-      for (uint32_t n = tree.leafOf(id); n != kNone; n = tree.parentOf(n)) outside += contains(nodes[n], p) ? 0 : 1;
+      for (const uint32_t n : path) outside += contains(nodes[n], p) ? 0 : 1;
     }
     // No larger than needed: the box of the object's box, and its rounding.
     const Box box = boxOf(world.truth.impl().meshes[object.mesh], object.worldFromMesh.m);

@@ -42,7 +42,7 @@ struct OnDevicePlaces : test::Encoded {
     const std::vector<Result> known(queries.size());
     search.stage(batch.source(), known, impl, geometry.overwritten());
     Encoded::operator=(test::encodedBy(search, queries.size(),
-                                       [&](const gpu::Commands& commands) { geometry.record(commands, impl); }));
+                                       [&](const gpu::Commands& commands) { geometry.record(commands, impl, 0); }));
     gpu::Submission submission(device, false);
     geometry.recordReadback(submission.begin());
     submission.submitAndWait();

@@ -106,11 +106,19 @@ Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, con
   }
   Result first = finder.first();
   if (lists != nullptr) *lists = {finder.nearest(), {skipped.begin(), skipped.end()}};
-  if (query.clearance > 0) {
+  if (first.status == Status::overlap) {
     Query still = query;
     still.motion = Vector{};
     still.turn.reset();
-    describeStart(still, scene, tree, skipped, first, lists);
+    if (query.clearance > 0) {
+      describeStart(still, scene, tree, skipped, first, lists);
+    } else {
+      // Names the least pair, exactly.
+      still.hits = 1;
+      still.exclude.insert(still.exclude.end(), skipped.begin(), skipped.end());
+      still.skipOverlapping = false;
+      first = answer(still, scene, tree, nullptr, *stop_);
+    }
   }
   return first;
 }

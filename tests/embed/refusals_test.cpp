@@ -75,14 +75,20 @@ TEST_CASE("record refuses queries that break their contract, or are too many, an
   all.refuse(std::vector<Query>(4, all.good[0]), "expected at most 3 queries, got 4");
 }
 
-TEST_CASE("what only the CPU combines is refused and named") {
+TEST_CASE("what only the CPU answers is refused and named") {
   Refusing all;
   const auto refuse = [&](const auto& change, const std::string& what) {
     const std::vector<Query> queries = all.with(change);
     CHECK_FALSE(test::isRecordable(queries[1], all.row.scene));
-    all.refuse(queries, "query 1: only the CPU combines " + what + ": ask a Sweeper");
+    all.refuse(queries, "query 1: only the CPU answers " + what + ": ask a Sweeper");
   };
   refuse([](Query& query) { query.skipOverlapping = true; }, "skipOverlapping");
+  refuse(
+      [](Query& query) {
+        tools::takeStep(query);
+        query.turn = Turn{{0, 0, 1}, 1, {}};
+      },
+      "a turn");
   const auto close = [](const auto& change) {
     return [change](Query& query) {
       query.clearance = 0.5;
@@ -97,7 +103,7 @@ TEST_CASE("what only the CPU combines is refused and named") {
   all.row.scene.setMotion(0, {0, 0, 1});
   CHECK_FALSE(test::isRecordable(all.good[0], all.row.scene));
   CHECK_THROWS_WITH(test::execute(all.recorder, all.good),
-                    Contains("query 0: only the CPU combines a direction while objects move: ask a Sweeper"));
+                    Contains("query 0: only the CPU answers a direction while objects move: ask a Sweeper"));
   CHECK_THROWS_WITH(test::execute(all.recorder, HostQueries{.buffer = all.buffer, .count = 1}),
                     Contains("record: queries: expected a scene in which no object has a motion"));
 }

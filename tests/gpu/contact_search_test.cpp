@@ -67,8 +67,8 @@ TEST_CASE("the answers have the same bits with the smallest lists and in the sho
   const test::Case batch = familyOf(family);
   const std::vector<Result> roomy = DeviceSearch(batch.scene).run(batch.queries).results;
   SearchTuning room = GENERATE(SearchTuning{.tasks = 1}, SearchTuning{.candidates = 1}, SearchTuning{.unresolved = 1},
-                               SearchTuning{.groups = 1}, SearchTuning{.budget = 1}, SearchTuning{.budget = 17},
-                               SearchTuning{.groups = 3, .budget = 5, .width = 1'000'000},
+                               SearchTuning{.groups = 1}, SearchTuning{.rounds = 2, .budget = 1},
+                               SearchTuning{.budget = 17}, SearchTuning{.groups = 3, .budget = 5, .width = 1'000'000},
                                SearchTuning{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
   std::tie(room.queue, room.stack) = GENERATE(std::pair{0u, 0u}, std::pair{1u, 4u}, std::pair{0u, 7u});
   CAPTURE(family, room);

@@ -237,7 +237,9 @@ TEST_CASE("random sensors that turn meet nothing before lo, and certainly someth
       Query still = query;
       still.turn.reset();
       still.motion = Vector{};
-      REQUIRE(answerOf(scene, still).status == Status::overlap);
+      const Result expected = answerOf(scene, still);
+      REQUIRE(expected.status == Status::overlap);
+      CHECK((found.object == expected.object && found.triB == expected.triB && found.triA == expected.triA));
     }
     if (found.status == Status::hit && getsDeep) {
       const Vector r =

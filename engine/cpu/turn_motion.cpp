@@ -11,7 +11,7 @@ namespace {
 constexpr double kMostAngle = 0.25;
 // How far points may bend away from straight ways: as a share of the sensor's radius, or of the length of its edges.
 constexpr double kBend = 0.05, kBendOfEdge = 0.5;
-constexpr double kMostParts = 1 << 20;
+constexpr double kMostParts = 1 << 14;  // of some 700 bytes
 
 double norm(const Vector& v) {
   return std::hypot(v[0], v[1], v[2]);
@@ -43,7 +43,7 @@ TurnMotion::TurnMotion(const Query& query, const Mesh& sensor) : turning_(query)
   double edge = 0;
   for (int k = 0; k < 3; ++k) edge = std::max(edge, norm({pose.m[k], pose.m[4 + k], pose.m[8 + k]}) * sensor.meanEdge);
   const double allowed =
-      std::max({std::min(kBend * reach, kBendOfEdge * edge), 0x1p-10 * reach, 0x1p-20 * (radius_ + length)});
+      std::max({std::min(kBend * reach, kBendOfEdge * edge), 0x1p-10 * reach, 0x1p-14 * (radius_ + length)});
   double count = std::ceil(angle / kMostAngle);
   while (count < kMostParts && bendSeenFromBody(radius_, angle / count, length / count) > allowed) count *= 1.5;
   count = std::min(std::ceil(count), kMostParts);

@@ -177,6 +177,31 @@ TEST_CASE("what turns on a plane that it does not touch is free, however near it
   }
 }
 
+TEST_CASE("ten thousand turns, and a centre a billion sizes away, are answered as few and near ones are") {
+  Scene scene;
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+  scene.addObject({.mesh = box, .worldFromMesh = at({0, 0, 3})});
+  // It screws itself upwards: whatever its angle, its upper side arrives when it has risen by 2.
+  Query query{.mesh = box};
+  query.motion = {0, 0, 4};
+  query.turn = Turn{{0, 0, 1}, 0x1p16, {0.25, 0, 0}};
+  const Result screwed = answerOf(scene, query);
+  CAPTURE(screwed.lo, screwed.hi);
+  CHECK(screwed.status == Status::hit);
+  CHECK(screwed.lo <= 0.5);
+  CHECK(screwed.hi >= 0.5);
+  CHECK(screwed.hi - screwed.lo < 1e-6);
+  // About an axis so far away it moves all but straight, by 3.
+  query.motion.reset();
+  query.turn = Turn{{0, 1, 0}, 3e-9, {1e9, 0, 0}};
+  const Result swung = answerOf(scene, query);
+  CAPTURE(swung.lo, swung.hi);
+  CHECK(swung.status == Status::hit);
+  CHECK(swung.lo <= 2 / 3.0 + 1e-7);
+  CHECK(swung.hi >= 2 / 3.0 - 1e-7);
+  CHECK(swung.hi - swung.lo < 1e-6);
+}
+
 TEST_CASE("a turn by no angle is the step alone, with its bits") {
   Random random(1);
   Scene scene;

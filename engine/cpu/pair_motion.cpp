@@ -63,7 +63,7 @@ MeshAxes::MeshAxes(const Matrix3& linear) : rows(roughInverse(linear)) {
 }
 
 PairMotion::PairMotion(const MeshPlacement& a, const MeshPlacement& b, const Piece& p, double c, double latest)
-    : piece(p), clearance(c + p.deviation), span(p.wayUntil(latest)) {
+    : piece(p), clearance(c), span(p.wayUntil(latest)) {
   const Vector& unit = piece.unit;
   int fastest = 0;
   for (int k = 0; k < 3; ++k) {

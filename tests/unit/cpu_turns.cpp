@@ -136,6 +136,28 @@ TEST_CASE("a rod that sweeps a post touches it at the angle that geometry says, 
   }
 }
 
+TEST_CASE("what only the middle of an arc reaches is found") {
+  Random random(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    Scene scene;
+    const MeshId rod = add(scene, tools::makeBox({2, 1e-3f, 1e-3f})),
+                 post = add(scene, tools::makeBox({0.1f, 1e-3f, 1e-3f}));
+    // The tip, 1 from the axis, is at cos(angle / 2) along x at both ends of the turn, and at 1 amid it.
+    const double angle = random.uniform(0.02, 0.5), bulge = angle * angle / 8;
+    const Vector place = scaled(random.magnitude(-2, 3), random.direction());
+    scene.addObject(
+        {.mesh = post, .worldFromMesh = at(along(place, 1, {1.05 - random.uniform(0.2, 0.8) * bulge, 0, 0}))});
+    Query query{.mesh = rod, .worldFromMesh = at(place)};
+    const double c = std::cos(angle / 2), s = std::sin(angle / 2);
+    query.worldFromMesh.m[0] = query.worldFromMesh.m[5] = c;
+    query.worldFromMesh.m[1] = s;
+    query.worldFromMesh.m[4] = -s;
+    query.turn = Turn{{0, 0, 1}, angle, place};
+    CAPTURE(trial, angle, place[0]);
+    CHECK(answerOf(scene, query).status == Status::hit);
+  }
+}
+
 TEST_CASE("a box that turns about one of its edges lands on a plane after the angle between them") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({2, 2, 2})), plate = add(scene, tools::makeBox({40, 40, 1}));

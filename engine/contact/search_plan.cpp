@@ -139,6 +139,12 @@ SearchSource SearchPlan::source() const {
           }};
 }
 
+SearchNeeds::SearchNeeds(const Query& query, const Scene::Impl& scene)
+    : route(routeOf(query, scene, true)),
+      ignoresLeaving(query.ignoreLeaving),
+      hasClearance(query.clearance > 0),
+      excludes(!query.exclude.empty()) {}
+
 void SearchList::clear() {
   searches_.clear();
   groups_.clear();
@@ -151,12 +157,12 @@ void SearchList::reserve(size_t searches) {
   groups_.reserve(searches);
 }
 
-void SearchList::add(std::span<const Query> queries, size_t query, std::span<const ObjectId> objects) {
-  const Query& asked = queries[query];
-  ignoresLeaving_ |= asked.ignoreLeaving;
-  hasClearances_ |= asked.clearance > 0;
+void SearchList::add(std::span<const Query> queries, size_t query, const SearchNeeds& needs,
+                     std::span<const ObjectId> objects) {
+  ignoresLeaving_ |= needs.ignoresLeaving;
+  hasClearances_ |= needs.hasClearance;
   groups_.push_back({query, count(), static_cast<uint32_t>(objects.size())});
-  const auto [first, end] = addExcluded(excluded_, asked, objects[0]);
+  const auto [first, end] = needs.excludes ? addExcluded(excluded_, queries[query], objects[0]) : std::pair{0u, 0u};
   for (const ObjectId object : objects) searches_.push_back({query, object, first, end});
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exact/translation.h"
+#include "query/route.h"
 #include "scene/scene.h"
 #include "shaders/contact/interop.h"
 
@@ -55,6 +56,14 @@ struct SearchPlan {
   SearchSource source() const;
 };
 
+/// What listing a query's searches takes, so that whoever lists them need not read the query.
+struct SearchNeeds {
+  Route route = Route::cpu;
+  bool ignoresLeaving = false, hasClearance = false, excludes = false;
+  SearchNeeds() = default;
+  SearchNeeds(const Query& query, const Scene::Impl& scene);
+};
+
 /// What a submission searches: stated only when that is staged, so that each search is written once, by all threads.
 /// Answers get the indices of their searches; those of searches that floats cannot hold say so.
 class SearchList {
@@ -65,7 +74,7 @@ class SearchList {
   void clear();
   void reserve(size_t searches);
   /// Adds a search for each of `objects`, of which there are some, as SearchPlan::add().
-  void add(std::span<const Query> queries, size_t query, std::span<const ObjectId> objects);
+  void add(std::span<const Query> queries, size_t query, const SearchNeeds& needs, std::span<const ObjectId> objects);
   /// What the searches are of. Its tree over objects is in range and not empty.
   struct Of {
     std::span<const Query> queries;

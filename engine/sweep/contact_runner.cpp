@@ -10,7 +10,6 @@
 #include "contact/decode.h"
 #include "cpu/clearance.h"
 #include "gpu/api.h"
-#include "query/route.h"
 #include "query/swept.h"
 #include "scene/parallel.h"
 #include "sweep/proof.h"
@@ -19,7 +18,7 @@ namespace radar {
 
 namespace {
 
-// Searches whose answers take as long to decode as a thread to wake.
+// Queries that take as long to look at, or their answers to decode, as a thread to wake.
 constexpr size_t kWorthThread = 2048;
 // Pairs that are left to the host: more of one search are dearer to decide than to search again.
 constexpr size_t kMostDecided = 256;
@@ -90,33 +89,40 @@ void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
     return;
   }
   const Clock::time_point begun = Clock::now();
-  const ObjectTree& tree = scene_.impl().objectTree();
+  const Scene::Impl& scene = scene_.impl();
+  const ObjectTree& tree = scene.objectTree();
   flight.addCpuTime("select", msSince(begun));
+  const Clock::time_point checking = Clock::now();
+  needs_.resize(which.size());
+  parallelFor(which.size(), kWorthThread, options_.cpuThreads, [&](unsigned, size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) needs_[i] = SearchNeeds(flight.queries[which[i]], scene);
+  });
+  flight.addCpuTime("check", msSince(checking));
   flight.encoding = Clock::now();
   planned_.reserve(std::min(which.size(), mostSearches_));
-  for (const size_t query : which) {
+  for (size_t i = 0; i < which.size(); ++i) {
     throwIfStopped(flight.stop);
-    if (!planQuery(flight, query, tree)) flight.left.push_back(query);
+    if (!planQuery(flight, which[i], needs_[i], tree)) flight.left.push_back(which[i]);
   }
   submit(flight);
 }
 
-bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tree) {
+bool ContactRunner::planQuery(Flight& flight, size_t query, const SearchNeeds& needs, const ObjectTree& tree) {
   static constexpr std::array kAll{kNone};
-  const Query& asked = flight.queries[query];
-  const Scene::Impl& scene = scene_.impl();
-  const Route route = routeOf(asked, scene, true);
-  if (route == Route::cpu || !tree.inRange()) return false;
+  if (needs.route == Route::cpu || !tree.inRange()) return false;
   std::vector<ObjectId> inReachOfIt;
   std::span<const ObjectId> objects = kAll;
-  if (route == Route::searchEach) objects = inReachOfIt = inReach(asked, scene, tree, roomyBox(asked, scene));
+  if (needs.route == Route::searchEach) {
+    const Query& asked = flight.queries[query];
+    objects = inReachOfIt = inReach(asked, scene_.impl(), tree, roomyBox(asked, scene_.impl()));
+  }
   if (objects.size() > mostSearches_) return false;
   if (objects.empty() || tree.nodes().empty()) {
     flight.answers.results[query] = clearAnswer();
     return true;
   }
   if (planned_.count() + objects.size() > mostSearches_) submit(flight);
-  planned_.add(flight.queries, query, objects);
+  planned_.add(flight.queries, query, needs, objects);
   return true;
 }
 

@@ -27,7 +27,7 @@ class ContactRunner {
  private:
   void plan(Flight& flight, std::span<const size_t> which);
   /// Lists the searches of a query; returns false, and lists none, if the CPU has to answer it.
-  bool planQuery(Flight& flight, size_t query, const ObjectTree& tree);
+  bool planQuery(Flight& flight, size_t query, const SearchNeeds& needs, const ObjectTree& tree);
   void submit(Flight& flight);
   void collect(Flight& flight);
   /// Waits for the last submission, whose searches are `groups`, and counts what it took; nothing if that fails.
@@ -51,6 +51,7 @@ class ContactRunner {
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   // Of one batch at a time; their memory is used again.
   std::vector<size_t> all_;
+  std::vector<SearchNeeds> needs_;             ///< of the queries to plan
   std::vector<SearchGroup> submitted_, last_;  ///< searches with the device, and those to decode
   SearchList planned_;                         ///< for the next submission
   cpu::Search cpu_;

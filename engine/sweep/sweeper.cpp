@@ -190,10 +190,12 @@ Answers Sweeper::run(std::span<const Query> queries, Mode mode, const std::stop_
 
 void Sweeper::run(std::span<const Query> queries, Answers& answers, Mode mode, const std::stop_token& stop) {
   const FloatEnvironment floats;
+  const Clock::time_point begun = Clock::now();
   if (mode == Mode::sampled) impl_->device.requireSampled("run()");
   requireValid(queries, impl_->scene, mode, false, impl_->options.cpuThreads);
   const SweeperOptions& options = impl_->options;
   Flight flight(queries, options.timestamps, stop, std::move(answers), options.cpuThreads);
+  flight.addCpuTime("check", msSince(begun));
   impl_->begin(flight, mode);
   impl_->finish(flight);
   answers = std::move(flight.answers);

@@ -26,7 +26,8 @@ TEST_CASE("the cost of a call is told for each workload, batch and number of thr
   std::istringstream table(folder.read("h/host.csv"));
   std::string line;
   std::getline(table, line);
-  CHECK_THAT(line, StartsWith("workload,batch,threads,call_us,host_us,plan_us,submit_us,decode_us,device_us,"));
+  CHECK_THAT(line,
+             StartsWith("workload,batch,threads,call_us,host_us,check_us,plan_us,submit_us,decode_us,device_us,"));
   size_t rows = 0;
   for (; std::getline(table, line); ++rows) {
     CAPTURE(line);
@@ -36,7 +37,7 @@ TEST_CASE("the cost of a call is told for each workload, batch and number of thr
     double call = 0, host = 0, part = 0, parts = 0;
     char comma = 0;
     cells >> call >> comma >> host >> comma;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 4; ++i) {
       cells >> part >> comma;
       CHECK(part > 0);
       parts += part;
@@ -51,17 +52,17 @@ TEST_CASE("the cost of a call is told for each workload, batch and number of thr
 }
 
 TEST_CASE("the model adds the host's parts up, and takes the greater of host and device") {
-  const auto row = [](const char* workload, uint32_t batch, uint32_t threads, double host, double submit,
+  const auto row = [](const char* workload, uint32_t batch, uint32_t threads, double host, double check, double submit,
                       double decode) {
-    return Json{{"workload", workload}, {"batch", batch},      {"threads", threads},
-                {"host_us", host},      {"submit_us", submit}, {"decode_us", decode}};
+    return Json{{"workload", workload}, {"batch", batch},      {"threads", threads}, {"host_us", host},
+                {"check_us", check},    {"submit_us", submit}, {"decode_us", decode}};
   };
   // A call takes 40 us whatever its batch; a query 0.05 us that are serial, and 0.16 us that are not.
   Json measured = Json::array();
   for (const char* workload : {"teapots", "boxes"}) {
-    measured.push_back(row(workload, 1, 1, 100, 39, 1));
-    measured.push_back(row(workload, 1'000, 2, 7, 5, 1));  // of two threads: not meant
-    measured.push_back(row(workload, 1'000, 1, 0.05 + 0.16 + 0.04, 0.1 + 0.03, 0.06 + 0.01));
+    measured.push_back(row(workload, 1, 1, 100, 0.5, 38.5, 1));
+    measured.push_back(row(workload, 1'000, 2, 7, 1, 4, 1));  // of two threads: not meant
+    measured.push_back(row(workload, 1'000, 1, 0.05 + 0.16 + 0.04, 0.02, 0.08 + 0.03, 0.06 + 0.01));
   }
   const Json rows = modelRows(measured);
   REQUIRE(rows.size() == measuredDevices().size());

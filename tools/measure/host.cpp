@@ -13,7 +13,7 @@ namespace radar::tools {
 namespace {
 
 // The calling thread's stages; the others are the device's.
-constexpr std::array kHostStages{"select", "plan", "submit", "decode", "cpu"};
+constexpr std::array kHostStages{"check", "select", "plan", "submit", "decode", "cpu"};
 
 struct Call {
   double wall = 0, host = 0;  ///< seconds, and those computed by the calling thread
@@ -53,11 +53,11 @@ Json rowOf(const std::string& workload, size_t queries, uint32_t threads, const 
            {"threads", threads},
            {"call_us", each * medianOf(calls, [](const Call& call) { return call.wall; })},
            {"host_us", host}};
-  for (const char* name : {"plan", "submit", "decode"}) {
+  for (const char* name : {"check", "plan", "submit", "decode"}) {
     row[std::string(name) + "_us"] = stages([&](const StageTime& stage) { return stage.name == name; });
   }
   row["device_us"] = stages([](const StageTime& stage) { return !isHosts(stage); });
-  row["cpu_search_us"] = each * cpu;
+  row["cpu_us"] = each * cpu;
   row["host_share"] = host / (each * cpu);
   return row;
 }

@@ -28,7 +28,7 @@ const Json& rowFor(const Json& rows, const std::string& workload, uint32_t most)
 }
 
 double inParallel(const Json& row) {
-  return row["submit_us"].get<double>() + row["decode_us"].get<double>();
+  return row["check_us"].get<double>() + row["submit_us"].get<double>() + row["decode_us"].get<double>();
 }
 
 }  // namespace
@@ -70,10 +70,12 @@ std::string modelAssumptions() {
   return print(
       "A model, not a measurement. device_us: measured with that batch on an\n%s.\n"
       "host_us = serial_us + parallel_us / %u, measured on this machine's processor with one thread, in batches of\n"
-      "host_batch: parallel_us is what submit and decode take but for record_us, which a call takes once whatever its\n"
-      "batch; serial_us is the rest, that included. Assumed: %u threads share parallel_us evenly, a query costs the\n"
-      "host the same in each batch from host_batch on, and neither the other machine's processor nor its memory is\n"
-      "slower than this one's. expected_us is the greater of device_us and host_us: the host's work hides behind the\n"
+      "host_batch: parallel_us is what check, submit and decode take but for record_us, which a call takes once\n"
+      "whatever its batch; serial_us is the rest, that included. Assumed: %u threads share parallel_us evenly, a "
+      "query\n"
+      "costs the host the same in each batch from host_batch on, and neither the other machine's processor nor its\n"
+      "memory is slower than this one's. expected_us is the greater of device_us and host_us: the host's work hides "
+      "behind the\n"
       "device's, or the other way. sum_per_s: if nothing is hidden.\n",
       kMeasuredDevice, kModelThreads, kModelThreads);
 }

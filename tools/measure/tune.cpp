@@ -50,7 +50,8 @@ class Bench {
     player_.show(0);
     queries_.assign(workload_.queries.begin(), workload_.queries.end());
     static constexpr std::array kAll{kNone};
-    for (size_t i = 0; i < queries_.size(); ++i) list_.add(queries_, i, kAll);
+    const Scene::Impl& scene = player_.scene().impl();
+    for (size_t i = 0; i < queries_.size(); ++i) list_.add(queries_, i, {queries_[i], scene}, kAll);
   }
 
   const std::string& name() const { return name_; }

@@ -260,29 +260,29 @@ void StraightTest<Real>::meetLeaves(const gpu::MeshNode& a, const gpu::MeshNode&
   }
 }
 
-/// The same where one turns.
-class TurningTest {
+/// The same in a part of other ways.
+class PathTests {
  public:
-  TurningTest(const TurningPair& pair, TurnContact& contact, uint64_t& pairs)
+  PathTests(const PathPair& pair, const PathTest& nodeTimes, PathContact& contact, uint64_t& pairs)
       : pair_(pair),
         contact_(contact),
         pairs_(pairs),
-        nodeTimes_(pair.fromSensor, pair.fromOther),
+        nodeTimes_(nodeTimes),
         placeA_(pair.sensor),
         placeB_(pair.other) {}
 
   float latest() const {
-    const double s = std::min(contact_.latest(), pair_.part.end) - pair_.part.from;
-    return static_cast<float>((1 + 0x1p-22) * (s / (pair_.part.end - pair_.part.from)));
+    const double s = std::min(contact_.latest(), pair_.end) - pair_.from;
+    return static_cast<float>((1 + 0x1p-22) * (s / (pair_.end - pair_.from)));
   }
   bool keepApart(const gpu::MeshNode&, const gpu::MeshNode&) const { return false; }
   Times<double> times(const FourNodes& a, const FourNodes& b) const { return nodeTimes_(a, b); }
   void meet(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
     pairs_ += trianglesOf(a) * trianglesOf(b);
-    const double from = pair_.part.from + (1 - 0x1p-22) * near * (pair_.part.end - pair_.part.from);
+    const double from = pair_.from + (1 - 0x1p-22) * near * (pair_.end - pair_.from);
     for (unsigned i = 0; i < trianglesOf(a); ++i) {
       for (unsigned k = 0; k < trianglesOf(b) && !contact_.isDecided(); ++k) {
-        contact_.setTimes(from, pair_.part.end);
+        contact_.setTimes(from, pair_.end);
         const TrianglePlacer::Placed &ofA = placeA_(a, i), &ofB = placeB_(b, k);
         contact_.consider({pair_.object, ofB.triangle, ofA.triangle}, {ofA.corners, ofB.corners}, 0);
       }
@@ -290,10 +290,10 @@ class TurningTest {
   }
 
  private:
-  const TurningPair& pair_;
-  TurnContact& contact_;
+  const PathPair& pair_;
+  PathContact& contact_;
   uint64_t& pairs_;
-  const TurnTest nodeTimes_;
+  const PathTest& nodeTimes_;
   TrianglePlacer placeA_, placeB_;
 };
 
@@ -312,11 +312,33 @@ void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, ui
   }
 }
 
-void MeshSearch::run(const TurningPair& pair, double near, TurnContact& contact, uint64_t& pairs,
-                     const std::stop_token& stop) {
-  TurningTest test(pair, contact, pairs);
-  descend(pair.sensor.mesh.tree, pair.other.mesh.tree,
-          Opener(pair.sensor.mesh, pair.other.mesh, pair.fromOther.matrix[0]), pair.object, near, test, contact, stop);
+void MeshSearch::run(const PathPair& pair, PathContact& contact, uint64_t& pairs, const std::stop_token& stop) {
+  const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
+  const gpu::MeshNode &rootA = treeA.nodes[0], &rootB = treeB.nodes[0];
+  const FourNodes a{&rootA, &rootA, &rootA, &rootA}, b{&rootB, &rootB, &rootB, &rootB};
+  const auto seenFrom = [&](const PathPair::End* own, const PathPair::End* other, const MeshAxes* axes, double sign,
+                            double bend) {
+    PathPlacement::Frame frame{{axes, axes},
+                               {own[0].placement, own[1].placement},
+                               {other[0].placement, other[1].placement},
+                               {scaled(sign, pair.gap[0]), scaled(sign, pair.gap[1])},
+                               pair.apart,
+                               bend,
+                               pair.axis};
+    for (int e = 0; e < 2; ++e) {
+      if (own[e].axes != nullptr) frame.axes[e] = own[e].axes;
+    }
+    return PathPlacement(frame);
+  };
+  const PathPlacement fromSensor = seenFrom(pair.a, pair.b, nullptr, 1, pair.bendSeen);
+  if (PathTest::areApart(fromSensor, a, b)) return;
+  const MeshAxes axes = pair.b[0].axes != nullptr ? *pair.b[0].axes : MeshAxes(pair.b[0].placement->linear);
+  const PathPlacement fromOther = seenFrom(pair.b, pair.a, &axes, -1, pair.bend);
+  if (PathTest::areApart(fromOther, b, a)) return;
+  const PathTest nodeTimes(fromSensor, fromOther);
+  PathTests test(pair, nodeTimes, contact, pairs);
+  descend(treeA, treeB, Opener(pair.sensor.mesh, pair.other.mesh, fromOther.matrix[0]), pair.object, 0, test, contact,
+          stop);
 }
 
 template <class Opener, class Test>

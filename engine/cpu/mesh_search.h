@@ -6,7 +6,8 @@
 
 #include "cpu/first_contact.h"
 #include "cpu/node_test.h"
-#include "cpu/turn_contact.h"
+#include "cpu/path_contact.h"
+#include "cpu/path_part.h"
 #include "query/cancelled.h"
 
 namespace radar::cpu {
@@ -26,12 +27,21 @@ struct MeshPair {
   const RelativePlacement &fromSensor, &fromOther;
 };
 
-/// The same in a part of a turn.
-struct TurningPair {
-  PlacedMesh sensor, other;  ///< at the start of the step
+/// Two meshes during a part of their ways.
+struct PathPair {
+  PlacedMesh sensor, other;  ///< as the contact takes their triangles
   ObjectId object;
-  const TurnPart& part;
-  const TurnPlacement &fromSensor, &fromOther;
+  double from = 0, end = 1;  ///< s
+  struct End {
+    const MeshPlacement* placement = nullptr;
+    const MeshAxes* axes = nullptr;  ///< null: of the placement, computed if needed; the same at both ends
+  };
+  End a[2], b[2];       ///< the sensor and the other
+  Vector gap[2];        ///< from the sensor's origin to the other's, at both ends
+  double apart = 0;     ///< world units: clearance, and rounding of places beside MeshPlacement::error
+  double bend = 0;      ///< of PathPlacement::Frame: of the sensor, as the other sees it
+  double bendSeen = 0;  ///< of the other, where it may touch the sensor, as that sees it
+  Vector axis{};        ///< of PathPlacement::Frame
 };
 
 /// Reuses its memory between searches. For one thread at a time.
@@ -41,8 +51,7 @@ class MeshSearch {
   /// pair's unit of time. Adds the pairs of triangles that are tested to `pairs`. Throws Cancelled soon after `stop` is
   /// requested.
   void run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs, const std::stop_token& stop);
-  /// The same in a part of a turn; `near`: of 1, the whole part.
-  void run(const TurningPair& pair, double near, TurnContact& contact, uint64_t& pairs, const std::stop_token& stop);
+  void run(const PathPair& pair, PathContact& contact, uint64_t& pairs, const std::stop_token& stop);
 
  private:
   /// Two nodes that cannot meet before `near`.

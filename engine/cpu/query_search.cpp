@@ -81,10 +81,10 @@ Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, con
                                std::span<const ObjectId> skipped, Listed* lists) {
   const Task task(query, scene);
   const TurnMotion motion(query, task.sensor);
-  TurnContact finder(query, motion, turnToleranceOf(query, task.sensor, motion));
+  TurnContact finder(query, motion, pathToleranceOf(query, task.sensor, motion.speedPast({})));
   // Of several hits, an object is searched in all parts before the next one.
-  std::vector<std::pair<ObjectId, const TurnPart*>> reached;
-  for (const TurnPart& part : motion.parts()) {
+  std::vector<std::pair<ObjectId, const PathPart*>> reached;
+  for (const PathPart& part : motion.parts()) {
     Box start = part.start;
     for (int k = 0; k < 3; ++k) {
       start.lo[k] -= query.clearance;
@@ -123,49 +123,28 @@ Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, con
   return first;
 }
 
-void QuerySearch::searchTurning(const Task& task, ObjectId id, const TurnMotion& motion, const TurnPart& part,
+void QuerySearch::searchTurning(const Task& task, ObjectId id, const TurnMotion& motion, const PathPart& part,
                                 TurnContact& finder) {
   throwIfStopped(*stop_);
   const Object& object = task.scene.objects[id].object;
   const Mesh& mesh = task.scene.meshes[object.mesh];
   if (finder.isBefore({id, mesh.tree.below[0].least, 0})) return;
   const MeshPlacement placement(mesh, object.worldFromMesh);
-  const MeshPlacement *const turning[] = {&part.at[0], &part.at[1]}, *const resting[] = {&placement, &placement};
-  Vector toObject[2], toSensor[2];
-  for (int e = 0; e < 2; ++e) {
-    const Vector moved = along(placement.origin, e == 0 ? part.from : part.end, object.motion);
-    toObject[e] = minus(moved, part.at[e].origin);
-    toSensor[e] = scaled(-1, toObject[e]);
-  }
-  const double error = task.query.clearance + part.error + 8 * kUnit * norm1(object.motion);
-  const FourNodes rootA{&task.sensor.tree.nodes[0], &task.sensor.tree.nodes[0], &task.sensor.tree.nodes[0],
-                        &task.sensor.tree.nodes[0]};
-  const FourNodes rootB{&mesh.tree.nodes[0], &mesh.tree.nodes[0], &mesh.tree.nodes[0], &mesh.tree.nodes[0]};
-  const TurnPlacement fromSensor({{&part.axes[0], &part.axes[1]},
-                                  {turning[0], turning[1]},
-                                  {resting[0], resting[1]},
-                                  {toObject[0], toObject[1]},
-                                  error,
-                                  motion.bendSeen(part, object.motion),
-                                  motion.turning().axis()});
-  if (TurnTest::areApart(fromSensor, rootA, rootB)) return;
-  const MeshAxes axes(placement.linear);
-  const TurnPlacement fromObject({{&axes, &axes},
-                                  {resting[0], resting[1]},
-                                  {turning[0], turning[1]},
-                                  {toSensor[0], toSensor[1]},
-                                  error,
-                                  part.bend,
-                                  motion.turning().axis()});
-  if (TurnTest::areApart(fromObject, rootB, rootA)) return;
   finder.beginObject(object.motion);
-  const TurningPair pair{{task.sensor, task.query.worldFromMesh, task.placement},
-                         {mesh, object.worldFromMesh, placement},
-                         id,
-                         part,
-                         fromSensor,
-                         fromObject};
-  meshes_.run(pair, 0, finder, pairs_, *stop_);
+  PathPair pair{{task.sensor, task.query.worldFromMesh, task.placement}, {mesh, object.worldFromMesh, placement}, id};
+  pair.from = part.from;
+  pair.end = part.end;
+  for (int e = 0; e < 2; ++e) {
+    pair.a[e] = {&part.at[e], &part.axes[e]};
+    pair.b[e] = {&placement, nullptr};
+    const Vector moved = along(placement.origin, e == 0 ? part.from : part.end, object.motion);
+    pair.gap[e] = minus(moved, part.at[e].origin);
+  }
+  pair.apart = task.query.clearance + part.error + 8 * kUnit * norm1(object.motion);
+  pair.bend = part.bend;
+  pair.bendSeen = motion.bendSeen(part, object.motion);
+  pair.axis = motion.turning().axis();
+  meshes_.run(pair, finder, pairs_, *stop_);
 }
 
 std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {

@@ -7,6 +7,7 @@
 
 #include "cpu/mesh_search.h"
 #include "cpu/nearest_search.h"
+#include "cpu/turn_contact.h"
 
 namespace radar::cpu {
 
@@ -30,7 +31,7 @@ class QuerySearch {
                      std::span<const ObjectId> skipped, Result& first, Listed* lists);
   Result answerTurn(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
                     std::span<const ObjectId> skipped, Listed* lists);
-  void searchTurning(const Task& task, ObjectId id, const TurnMotion& motion, const TurnPart& part,
+  void searchTurning(const Task& task, ObjectId id, const TurnMotion& motion, const PathPart& part,
                      TurnContact& finder);
   template <class Finder>
   void search(const Task& task, ObjectId id, Finder& finder);

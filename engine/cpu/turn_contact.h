@@ -1,38 +1,34 @@
 // Finds when a sensor that turns first touches an object, or comes within its clearance.
 #pragma once
 
-#include "cpu/bracketed_contact.h"
+#include "cpu/path_contact.h"
 #include "cpu/turn_motion.h"
 
 namespace radar::cpu {
 
-/// World units: how narrow brackets are to be, times the greatest speed (Query::tolerance).
-double turnToleranceOf(const Query& query, const Mesh& sensor, const TurnMotion& motion);
+/// World units: how narrow brackets are to be, times the greatest speed (Query::tolerance). `atMost`: the speed of a
+/// sensor without a size.
+double pathToleranceOf(const Query& query, const Mesh& sensor, double atMost);
 
-/// Of two triangles, one of which turns past the other: brackets of s.
-class TurnContact final : public BracketedContact {
+class TurnContact final : public PathContact {
  public:
   /// All outlive this.
-  TurnContact(const Query& query, const TurnMotion& motion, double tolerance);
+  TurnContact(const Query& query, const TurnMotion& motion, double tolerance)
+      : PathContact(query), motion_(motion), tolerance_(tolerance) {}
 
   /// Before the pairs of an object, which moves by `way` during the step, and stays in place until the next one.
-  void beginObject(const Vector& way);
-  /// Of the pairs considered next: they are known not to meet before `from`, and are of no interest after `to`.
-  void setTimes(double from, double to) {
-    from_ = from;
-    to_ = to;
+  void beginObject(const Vector& way) {
+    drift_ = way;
+    setTolerance(tolerance_, motion_.speedPast(way));
   }
 
  private:
-  class Pair;
+  class Path;
   std::optional<Approach> bracketOf(const exact::PairName& name, const exact::PlacedPair& pair) override;
-  bool counts(const exact::PlacedPair&) const override { return true; }
 
   const TurnMotion& motion_;
   double tolerance_;
-  Vector drift_{};   // of the object
-  double fine_ = 1;  // s in which the sensor moves by the tolerance
-  double from_ = 0, to_ = 1;
+  Vector drift_{};  // of the object
 };
 
 }  // namespace radar::cpu

@@ -1,0 +1,143 @@
+#include "cpu/path_part.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar::cpu {
+
+namespace {
+
+double norm(const Vector& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+}  // namespace
+
+PathPart::PathPart(const Mesh& mesh, const End& first, const End& last, double bending, double rounding)
+    : from(first.s),
+      end(last.s),
+      at{{mesh, first.pose}, {mesh, last.pose}},
+      axes{MeshAxes(at[0].linear), MeshAxes(at[1].linear)},
+      bend(bending),
+      error(rounding),
+      start(boxOf(mesh, first.pose.m)) {
+  const Vector moved = minus(last.middle, first.middle);
+  Box other = boxOf(mesh, last.pose.m);
+  for (int k = 0; k < 3; ++k) {
+    other.lo[k] -= moved[k];
+    other.hi[k] -= moved[k];
+  }
+  start.merge(other);
+  for (int k = 0; k < 3; ++k) {
+    const double off = 16 * kUnit * (std::abs(moved[k]) + std::abs(first.middle[k]) + std::abs(last.middle[k]));
+    start.lo[k] -= off;
+    start.hi[k] += off;
+  }
+  const double straight = norm(moved);
+  // Along another unit vector, at most as far as the middle moves.
+  piece.unit = straight > 0x1p-500 ? scaled(1 / straight, moved) : Vector{1, 0, 0};
+  piece.from = from;
+  piece.end = end;
+  piece.rate = (1 + 0x1p-40) * straight / (end - from) + 0x1p-1000;
+  piece.deviation = (1 + 0x1p-40) * (2 * bend + 2 * error) + 0x1p-40 * straight + 0x1p-490;
+}
+
+PathPlacement::PathPlacement(const Frame& frame) {
+  for (int k = 0; k < 3; ++k) {
+    slack[k] = 0;
+    double magnitude = 4;
+    for (int e = 0; e < 2; ++e) {
+      const Vector& n = frame.axes[e]->rows[k];
+      const MeshPlacement &own = *frame.own[e], &other = *frame.other[e];
+      offset[e][k] = dot(n, frame.gap[e]);
+      magnitude += std::abs(offset[e][k]);
+      Vector rounding;
+      for (int i = 0; i < 3; ++i) {
+        rounding[i] = own.error[i] + other.error[i] + 0x1p-1000 +
+                      32 * kUnit * (own.extent[i] + other.extent[i] + std::abs(frame.gap[e][i]));
+      }
+      for (int j = 0; j < 3; ++j) {
+        matrix[e][k][j] = n[0] * other.linear[0][j] + n[1] * other.linear[1][j] + n[2] * other.linear[2][j];
+        magnitude += 2 * std::abs(matrix[e][k][j]);
+      }
+      const double across = frame.axis == Vector{} ? norm(n) : norm(cross(frame.axis, n)) + 0x1p-40 * norm(n);
+      const double bent = across * frame.bend;
+      slack[k] = std::max(
+          slack[k], 1.01 * (norm(n) * frame.apart + bent) + reachAlong(n, rounding) + 2 * frame.axes[e]->residual[k]);
+    }
+    slack[k] += 64 * kUnit * magnitude;
+    if (!(magnitude < kMostMagnitude<double>)) slack[k] = INFINITY;
+  }
+}
+
+PathTest::Axes::Axes(const PathPlacement& placement) {
+  for (int k = 0; k < 3; ++k) {
+    const bool usable = placement.slack[k] < INFINITY;
+    slack[k] = placement.slack[k];
+    for (int e = 0; e < 2; ++e) {
+      offset[e][k] = usable ? placement.offset[e][k] : 0;
+      for (int j = 0; j < 3; ++j) {
+        const double entry = usable ? placement.matrix[e][k][j] : 0;
+        matrix[e][k][j] = entry;
+        size[e][k][j] = std::abs(entry);
+      }
+    }
+  }
+}
+
+struct PathTest::Boxes {
+  LaneVec<double> centre, half;
+
+  explicit Boxes(const FourNodes& nodes) {
+    for (int k = 0; k < 3; ++k) {
+      const auto lanes = [&](const auto& of) {
+        return FourFloats{of(*nodes[0]), of(*nodes[1]), of(*nodes[2]), of(*nodes[3])};
+      };
+      centre[k] = lanes([k](const gpu::MeshNode& node) { return node.centre[k]; });
+      half[k] = lanes([k](const gpu::MeshNode& node) { return node.halfExtent[k]; });
+    }
+  }
+};
+
+namespace {
+
+/// Cuts off the times t at which a number is below 0 that changes evenly, from g0 at 0 to g1 at 1.
+void cutBelow(Times<double>& times, const Lanes<double>& g0, const Lanes<double>& g1) {
+  using L = Lanes<double>;
+  const L zero = 0.0, never = double{INFINITY}, at = g0 / (g0 - g1);
+  const L from = select(zero, g0, select(zero, g1, never, at * L(1 - 4 * kUnit)), -never);
+  const L to = select(zero, g1, select(zero, g0, -never, at * L(1 + 4 * kUnit)), never);
+  times.from = max(from, times.from);
+  times.to = min(to, times.to);
+}
+
+}  // namespace
+
+// The middle of the other box, less that of the own, stays within half the sum of their extents, where they meet.
+void PathTest::cut(Times<double>& times, const Boxes& own, const Boxes& other, const Axes& axes) {
+  for (int k = 0; k < 3; ++k) {
+    Lanes<double> middle[2], half[2];
+    for (int e = 0; e < 2; ++e) {
+      middle[e] = axes.offset[e][k] + dot(axes.matrix[e][k], other.centre) - own.centre[k];
+      half[e] = dot(axes.size[e][k], other.half) + own.half[k] + axes.slack[k];
+    }
+    cutBelow(times, half[0] - middle[0], half[1] - middle[1]);
+    cutBelow(times, half[0] + middle[0], half[1] + middle[1]);
+  }
+}
+
+bool PathTest::areApart(const PathPlacement& fromOwn, const FourNodes& own, const FourNodes& other) {
+  Times<double> times{0.0, 1.0};
+  cut(times, Boxes(own), Boxes(other), Axes(fromOwn));
+  return times.from[0] > times.to[0];
+}
+
+Times<double> PathTest::operator()(const FourNodes& nodesA, const FourNodes& nodesB) const {
+  const Boxes a(nodesA), b(nodesB);
+  Times<double> times{0.0, 1.0};
+  cut(times, a, b, alongA_);
+  cut(times, b, a, alongB_);
+  return times;
+}
+
+}  // namespace radar::cpu

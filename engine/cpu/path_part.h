@@ -1,0 +1,65 @@
+// A mesh that turns on its way past another one, for a part of the way: where both ends of the part put it, and how far
+// from the straight ways between them its points get. docs/method.md derives the bounds.
+#pragma once
+
+#include "cpu/node_test.h"
+
+namespace radar::cpu {
+
+/// A part of a way, past objects that stand. Its straight way, for the walk of the tree over objects, is that of a box.
+struct PathPart {
+  /// Where the mesh is at an end, and its middle with it.
+  struct End {
+    double s;
+    Transform pose;
+    Vector middle;
+  };
+  PathPart(const Mesh& mesh, const End& first, const End& last, double bend, double error);
+
+  double from, end;     ///< s
+  MeshPlacement at[2];  ///< of the sensor, at both
+  MeshAxes axes[2];
+  double bend;   ///< world units: no point gets farther from its straight way, but for rounding
+  double error;  ///< world units: of a place, by rounding, beside MeshPlacement::error
+  Box start;     ///< around the sensor, while its middle is where it is at `from`
+  Piece piece;   ///< of that middle; its deviation includes `bend` and `error`
+};
+
+/// One mesh in the other's normalised frame, at both ends of a part: a vertex p of the former is at matrix p + offset.
+struct PathPlacement {
+  Matrix3 matrix[2];
+  Vector offset[2], slack;  ///< slack: how far off that is between the ends, with the clearance and all rounding
+
+  struct Frame {
+    const MeshAxes* axes[2];
+    const MeshPlacement* own[2];
+    const MeshPlacement* other[2];
+    Vector gap[2];  ///< from the own origin to the other's
+    double apart;   ///< world units: clearance and rounding
+    double bend;    ///< world units, across the axis
+    Vector axis;    ///< of length 1; 0: in any direction
+  };
+  explicit PathPlacement(const Frame& frame);
+};
+
+/// As NodeTest, by the slabs along both meshes' axes.
+class PathTest {
+ public:
+  PathTest(const PathPlacement& fromA, const PathPlacement& fromB) : alongA_(fromA), alongB_(fromB) {}
+  /// Time runs from 0 to 1 in the part.
+  Times<double> operator()(const FourNodes& a, const FourNodes& b) const;
+  /// Whether the first of each stay apart along the first one's axes.
+  static bool areApart(const PathPlacement& fromOwn, const FourNodes& own, const FourNodes& other);
+
+ private:
+  struct Axes {
+    LaneVec<double> matrix[2][3], size[2][3], offset[2], slack;
+    explicit Axes(const PathPlacement& placement);
+  };
+  struct Boxes;
+  static void cut(Times<double>& times, const Boxes& own, const Boxes& other, const Axes& axes);
+
+  Axes alongA_, alongB_;
+};
+
+}  // namespace radar::cpu

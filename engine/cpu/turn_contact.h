@@ -6,9 +6,9 @@
 
 namespace radar::cpu {
 
-/// World units: how narrow brackets are to be, times the greatest speed (Query::tolerance). `atMost`: the speed of a
-/// sensor without a size.
-double pathToleranceOf(const Query& query, const Mesh& sensor, double atMost);
+/// World units: how narrow brackets are to be, times the greatest speed (Query::tolerance), of what is in `box`.
+/// `speed`: of a sensor without a size, which replaces it.
+double pathToleranceOf(const Query& query, const Box& box, double speed);
 
 class TurnContact final : public PathContact {
  public:

@@ -1,0 +1,110 @@
+#include "cpu/chain_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar::cpu {
+
+namespace {
+
+double norm(const Vector& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+Vector placed(const Transform& pose, const Vector& p) {
+  Vector out;
+  for (int i = 0; i < 3; ++i) {
+    const double* r = &pose.m[4 * i];
+    out[i] = r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3];
+  }
+  return out;
+}
+
+double radiusOf(const exact::Triangle& corners) {
+  return (1 + 0x1p-40) * std::max({norm(corners[0]), norm(corners[1]), norm(corners[2])});
+}
+
+}  // namespace
+
+void ChainContact::beginLinks(const Mover& a, const Mover& b, double tolerance, double speed) {
+  a_ = a;
+  b_ = b;
+  isObject_ = false;
+  drift_ = {};
+  setTolerance(tolerance, speed);
+}
+
+void ChainContact::beginObject(const Mover& a, const Vector& drift, double tolerance, double speed) {
+  a_ = a;
+  isObject_ = true;
+  drift_ = drift;
+  setTolerance(tolerance, speed);
+}
+
+/// About where b's first corner starts, in the frame in which both move. An object's is the base's, with the world's
+/// axes.
+class ChainContact::Path final : public PairPath {
+ public:
+  Path(const ChainContact& contact, const exact::PlacedPair& pair)
+      : PairPath(contact.query_.clearance), contact_(contact), motion_(contact.motion_), a_(pair.a), b_(pair.b) {
+    const WayBounds ofA = motion_.boundsFor(*contact.a_.way, radiusOf(a_), contact.a_.error);
+    WayBounds ofB;
+    if (contact.isObject_) {
+      const Vector base = motion_.base();
+      for (Vector& corner : b_) corner = minus(corner, base);
+      ofB.reach = radiusOf(b_) + norm1(contact.drift_);
+      ofB.speed = norm1(contact.drift_);
+      ofB.error = 4 * kUnit * (ofB.reach + norm1(base));
+    } else {
+      ofB = motion_.boundsFor(*contact.b_.way, radiusOf(b_), contact.b_.error);
+    }
+    const double most = ofA.reach + 2 * ofB.reach + clearance_;
+    speed_ = ofA.speed + ofB.speed;
+    bend_ = (ofA.turning + ofB.turning) / 8;
+    error_ = ofA.error + 2 * ofB.error + 16 * kUnit * (most + speed_);
+    setUnit(most);
+    about_ = contact.isObject_ ? b_[0] : placed(motion_.pose(*contact.b_.way, 0), b_[0]);
+  }
+
+  Places at(double s) const override {
+    Places out;
+    put(motion_.pose(*contact_.a_.way, s), a_, out.a);
+    if (contact_.isObject_) {
+      for (int i = 0; i < 3; ++i) {
+        out.b[i] = scaled(unit_, minus(radar::along(b_[i], s, contact_.drift_), about_));
+      }
+    } else {
+      put(motion_.pose(*contact_.b_.way, s), b_, out.b);
+    }
+    return out;
+  }
+  Separation separationAt(double s) const override {
+    exact::Triangle a, b;
+    const Transform poseA = motion_.pose(*contact_.a_.worldWay, s);
+    Transform poseB;
+    if (!contact_.isObject_) poseB = motion_.pose(*contact_.b_.worldWay, s);
+    for (int i = 0; i < 3; ++i) {
+      a[i] = placed(poseA, a_[i]);
+      b[i] = radar::along(placed(poseB, b_[i]), s, contact_.drift_);
+    }
+    Separation found = separationOf(a, b);
+    found.point = radar::along(found.point, 1, motion_.base());
+    return found;
+  }
+
+ private:
+  void put(const Transform& pose, const exact::Triangle& from, exact::Triangle& to) const {
+    for (int i = 0; i < 3; ++i) to[i] = scaled(unit_, minus(placed(pose, from[i]), about_));
+  }
+
+  const ChainContact& contact_;
+  const ChainMotion& motion_;
+  exact::Triangle a_, b_;
+  Vector about_;
+};
+
+std::optional<Approach> ChainContact::bracketOf(const exact::PairName&, const exact::PlacedPair& placed) {
+  return bracket(Path(*this, placed));
+}
+
+}  // namespace radar::cpu

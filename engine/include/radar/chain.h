@@ -23,8 +23,8 @@ struct LinkMesh {
   Transform linkFromMesh{};
 };
 
-/// A link and the joint that carries it. In a configuration q, the link is in its parent's frame at
-///   parentFromLink = parentFromJoint J(q[variable]),
+/// A link and the joint that carries it. In a configuration q, the link is placed in its parent's frame by
+///   parentFromJoint J(q[variable]),
 /// where J turns by that angle, radians, about the axis through the joint's origin, by the right-hand rule (revolute),
 /// moves by that length along axis / |axis| (prismatic), or does nothing (fixed). As in URDF.
 struct Link {

@@ -2,26 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace radar::cpu {
 
 namespace {
 
-double norm(const Vector& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
-Vector placed(const Transform& pose, const Vector& p) {
-  Vector out;
-  for (int i = 0; i < 3; ++i) {
-    const double* r = &pose.m[4 * i];
-    out[i] = r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3];
-  }
-  return out;
-}
-
 double radiusOf(const exact::Triangle& corners) {
-  return (1 + 0x1p-40) * std::max({norm(corners[0]), norm(corners[1]), norm(corners[2])});
+  const auto square = [](const Vector& v) { return dot(v, v); };
+  return (1 + 0x1p-40) * std::sqrt(std::max({square(corners[0]), square(corners[1]), square(corners[2])})) + 0x1p-500;
 }
 
 }  // namespace
@@ -39,6 +28,13 @@ void ChainContact::beginObject(const Mover& a, const Vector& drift, double toler
   isObject_ = true;
   drift_ = drift;
   setTolerance(tolerance, speed);
+}
+
+const Transform& ChainContact::pose(const LinkWay& way, double s) const {
+  const size_t hash = std::hash<double>()(s) ^ std::hash<const void*>()(&way) >> 4;
+  Known& known = known_[(hash ^ hash >> 32 ^ hash >> 48) % known_.size()];
+  if (known.way != &way || known.s != s) known = {&way, s, motion_.pose(way, s)};
+  return known.pose;
 }
 
 /// About where b's first corner starts, in the frame in which both move. An object's is the base's, with the world's
@@ -63,18 +59,18 @@ class ChainContact::Path final : public PairPath {
     bend_ = (ofA.turning + ofB.turning) / 8;
     error_ = ofA.error + 2 * ofB.error + 16 * kUnit * (most + speed_);
     setUnit(most);
-    about_ = contact.isObject_ ? b_[0] : placed(motion_.pose(*contact.b_.way, 0), b_[0]);
+    about_ = contact.isObject_ ? b_[0] : placed(contact.pose(*contact.b_.way, 0), b_[0]);
   }
 
   Places at(double s) const override {
     Places out;
-    put(motion_.pose(*contact_.a_.way, s), a_, out.a);
+    put(contact_.pose(*contact_.a_.way, s), a_, out.a);
     if (contact_.isObject_) {
       for (int i = 0; i < 3; ++i) {
         out.b[i] = scaled(unit_, minus(radar::along(b_[i], s, contact_.drift_), about_));
       }
     } else {
-      put(motion_.pose(*contact_.b_.way, s), b_, out.b);
+      put(contact_.pose(*contact_.b_.way, s), b_, out.b);
     }
     return out;
   }

@@ -25,11 +25,19 @@ class ChainContact final : public PathContact {
  private:
   class Path;
   std::optional<Approach> bracketOf(const exact::PairName& name, const exact::PlacedPair& pair) override;
+  /// Of the motion; remembered, since most pairs ask for the ends of the same few times.
+  const Transform& pose(const LinkWay& way, double s) const;
 
   const ChainMotion& motion_;
   Mover a_{}, b_{};
   bool isObject_ = false;
   Vector drift_{};
+  struct Known {
+    const LinkWay* way = nullptr;
+    double s = 0;
+    Transform pose;
+  };
+  mutable std::array<Known, 64> known_;
 };
 
 }  // namespace radar::cpu

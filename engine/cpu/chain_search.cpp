@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cpu/turn_contact.h"
 #include "math/float_environment.h"
@@ -18,6 +19,7 @@ constexpr double kMostAngle = 0.25;
 // How far points may bend away from straight ways: as a share of the body's radius, or of the length of its edges.
 constexpr double kBend = 0.05, kBendOfEdge = 0.5;
 constexpr double kMostParts = 1 << 14;
+constexpr double kSteps = 8;  // of a part
 
 double norm(const Vector& v) {
   return std::hypot(v[0], v[1], v[2]);
@@ -129,9 +131,7 @@ ChainResult ChainSearch::answer(const ChainQuery& asked, const Chain& chain, con
   const Task task{scene, motion, query, stop};
   who_.clear();
   ChainContact finder(query, motion);
-  for (const ChainPlan::Body& body : plan.bodies) {
-    if (!finder.isDecided()) searchObjects(task, body, finder);
-  }
+  searchObjects(task, plan, finder);
   for (const ChainPlan::Pair& pair : plan.pairs) {
     if (finder.isDecided()) break;
     const ChainPlan::Body &a = plan.bodies[pair.a], &b = plan.bodies[pair.b];
@@ -153,27 +153,51 @@ ChainResult ChainSearch::answer(const ChainQuery& asked, const Chain& chain, con
   return out;
 }
 
-void ChainSearch::searchObjects(const Task& task, const ChainPlan::Body& body, ChainContact& finder) {
-  const ObjectTree& tree = task.scene.objectTree();
-  const Moving moving(task.motion, body, body.way);
-  const double clearance = task.query.clearance;
-  const Vector base = task.motion.base();
-  const double error = moving.points.error + 16 * kUnit * (norm1(base) + moving.points.reach);
-  const double count = moving.parts(0, 0, clearance);
-  const auto endAt = [&](double s) {
-    Transform pose = task.motion.pose(body.way, s);
+/// A body's way from the base, part by part.
+class ChainSearch::Ahead {
+ public:
+  Ahead(const Task& task, const ChainPlan::Body& body)
+      : motion_(task.motion),
+        moving_(task.motion, body, body.way),
+        count_(moving_.parts(0, 0, task.query.clearance)),
+        error_(moving_.points.error + 16 * kUnit * (norm1(task.motion.base()) + moving_.points.reach)),
+        last_(endAt(0)) {}
+
+  const Moving& moving() const { return moving_; }
+  /// Where the next part begins; infinite after the last one.
+  double from() const { return index_ < count_ ? last_.s : INFINITY; }
+  PathPart next() {
+    ++index_;
+    const PathPart::End first = std::exchange(last_, endAt(index_ < count_ ? index_ / count_ : 1));
+    return {*moving_.body.mesh, first, last_, moving_.bend(kRoom * (last_.s - first.s)), error_};
+  }
+
+ private:
+  PathPart::End endAt(double s) const {
+    Transform pose = motion_.pose(moving_.way, s);
+    const Vector base = motion_.base();
     for (int k = 0; k < 3; ++k) pose.m[4 * k + 3] += base[k];
-    Vector middle;
-    for (int k = 0; k < 3; ++k)
-      middle[k] = dot({pose.m[4 * k], pose.m[4 * k + 1], pose.m[4 * k + 2]}, body.middle) + pose.m[4 * k + 3];
-    return PathPart::End{s, product(pose, body.pose), middle};
-  };
+    return {s, product(pose, moving_.body.pose), placed(pose, moving_.body.middle)};
+  }
+
+  const ChainMotion& motion_;
+  Moving moving_;
+  double count_, index_ = 0, error_;
+  PathPart::End last_;
+};
+
+// All bodies' ways at once, so that an early conflict of one ends the search of all.
+void ChainSearch::searchObjects(const Task& task, const ChainPlan& plan, ChainContact& finder) {
+  const ObjectTree& tree = task.scene.objectTree();
+  const double clearance = task.query.clearance;
   const Participants participants(task.query, task.scene);
-  PathPart::End last = endAt(0);
-  for (double i = 0; i < count && !finder.isDecided() && finder.latest() >= last.s; ++i) {
-    const PathPart::End next = endAt(i + 1 < count ? (i + 1) / count : 1);
-    const double length = kRoom * (next.s - last.s);
-    const PathPart part(*body.mesh, last, next, moving.bend(length), error);
+  std::vector<Ahead> ahead;
+  ahead.reserve(plan.bodies.size());
+  for (const ChainPlan::Body& body : plan.bodies) ahead.emplace_back(task, body);
+  while (!finder.isDecided() && !ahead.empty()) {
+    Ahead& earliest = *std::ranges::min_element(ahead, {}, &Ahead::from);
+    if (std::isinf(earliest.from()) || earliest.from() > finder.latest()) break;
+    const PathPart part = earliest.next();
     Box start = part.start;
     for (int k = 0; k < 3; ++k) {
       start.lo[k] -= clearance;
@@ -183,8 +207,7 @@ void ChainSearch::searchObjects(const Task& task, const ChainPlan::Body& body, C
       return !finder.isDecided() && finder.latest() >= part.from && near <= part.piece.wayUntil(finder.latest());
     };
     walk(participants, tree, part.piece, start, wants,
-         [&](ObjectId id) { searchObject(task, moving, part, id, finder); });
-    last = next;
+         [&](ObjectId id) { searchObject(task, earliest.moving(), part, id, finder); });
   }
 }
 
@@ -210,6 +233,7 @@ void ChainSearch::searchObject(const Task& task, const Moving& moving, const Pat
     const Vector moved = along(placement.origin, e == 0 ? part.from : part.end, object.motion);
     pair.gap[e] = minus(moved, part.at[e].origin);
   }
+  pair.steps = kSteps;
   pair.apart = task.query.clearance + part.error + 8 * kUnit * drift;
   pair.bend = part.bend;
   pair.bendSeen = moving.bendSeen(length, drift, 0, task.query.clearance);
@@ -243,19 +267,14 @@ void ChainSearch::searchPair(const Task& task, const ChainPlan::Pair& of, ChainC
       pair.b[e] = {&atB[e], &axesB[e]};
       pair.gap[e] = minus(atB[e].origin, atA[e].origin);
     }
+    pair.steps = kSteps;
     pair.apart = clearance + error;
     pair.bend = b.bendSeen(length, a.points.speed, a.points.turning, clearance);
     pair.bendSeen = a.bendSeen(length, b.points.speed, b.points.turning, clearance);
     meshes_.run(pair, finder, pairs_, task.stop);
   };
   const auto middleAt = [&](const Moving& moving, double s) {
-    const Transform pose = task.motion.pose(moving.way, s);
-    Vector out;
-    for (int k = 0; k < 3; ++k) {
-      const double* r = &pose.m[4 * k];
-      out[k] = r[0] * moving.body.middle[0] + r[1] * moving.body.middle[1] + r[2] * moving.body.middle[2] + r[3];
-    }
-    return out;
+    return placed(task.motion.pose(moving.way, s), moving.body.middle);
   };
   // Earlier halves first; none in which balls around both stay apart.
   const auto visit = [&](const auto& self, double from, double end) -> void {

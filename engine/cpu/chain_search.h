@@ -46,8 +46,9 @@ class ChainSearch {
   struct Task;
   /// A body in motion, relative to a frame.
   struct Moving;
+  class Ahead;
 
-  void searchObjects(const Task& task, const ChainPlan::Body& body, ChainContact& finder);
+  void searchObjects(const Task& task, const ChainPlan& plan, ChainContact& finder);
   void searchObject(const Task& task, const Moving& moving, const PathPart& part, ObjectId id, ChainContact& finder);
   void searchPair(const Task& task, const ChainPlan::Pair& pair, ChainContact& finder);
 

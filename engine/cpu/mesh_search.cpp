@@ -279,7 +279,9 @@ class PathTests {
   Times<double> times(const FourNodes& a, const FourNodes& b) const { return nodeTimes_(a, b); }
   void meet(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
     pairs_ += trianglesOf(a) * trianglesOf(b);
-    const double from = pair_.from + (1 - 0x1p-22) * near * (pair_.end - pair_.from);
+    double early = (1 - 0x1p-22) * near;
+    if (pair_.steps > 0) early = std::floor(early * pair_.steps) / pair_.steps;
+    const double from = pair_.from + early * (pair_.end - pair_.from);
     for (unsigned i = 0; i < trianglesOf(a); ++i) {
       for (unsigned k = 0; k < trianglesOf(b) && !contact_.isDecided(); ++k) {
         contact_.setTimes(from, pair_.end);

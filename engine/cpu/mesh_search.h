@@ -42,6 +42,8 @@ struct PathPair {
   double bend = 0;      ///< of PathPlacement::Frame: of the sensor, as the other sees it
   double bendSeen = 0;  ///< of the other, where it may touch the sensor, as that sees it
   Vector axis{};        ///< of PathPlacement::Frame
+  double steps = 0;     ///< if above 0, pairs are considered from an end of so many equal steps on, since their places
+                        ///< are dear to compute
 };
 
 /// Reuses its memory between searches. For one thread at a time.

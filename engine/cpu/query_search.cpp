@@ -81,7 +81,8 @@ Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, con
                                std::span<const ObjectId> skipped, Listed* lists) {
   const Task task(query, scene);
   const TurnMotion motion(query, task.sensor);
-  TurnContact finder(query, motion, pathToleranceOf(query, boxOf(task.sensor, query.worldFromMesh.m), motion.speedPast({})));
+  TurnContact finder(query, motion,
+                     pathToleranceOf(query, boxOf(task.sensor, query.worldFromMesh.m), motion.speedPast({})));
   // Of several hits, an object is searched in all parts before the next one.
   std::vector<std::pair<ObjectId, const PathPart*>> reached;
   for (const PathPart& part : motion.parts()) {

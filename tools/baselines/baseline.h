@@ -25,6 +25,15 @@ class Baseline {
   virtual std::optional<double> cast(const Query& query) = 0;
 };
 
+/// Least distances of bodies to a workload's first scene, as FCL computes them.
+class Distances {
+ public:
+  virtual ~Distances() = default;
+  virtual double of(const Instance& body) = 0;
+};
+/// None if libraries are not built. The workload outlives it.
+std::unique_ptr<Distances> makeDistances(const Workload& workload);
+
 /// A row of the chart: a library, used in one way.
 struct BaselineRow {
   std::string family;

@@ -2,6 +2,8 @@
 // FCL's continuous mode is approximate and takes one pair of objects per call, so users with a scene do not use it.
 #include <fcl/fcl.h>
 
+#include <limits>
+
 #include "baselines/rigid.h"
 
 namespace radar::tools {
@@ -35,6 +37,13 @@ fcl::Transform3d transformOf(const RigidPose& pose) {
   return transform;
 }
 
+using Shapes = ShapeCache<std::shared_ptr<Model>>;
+
+std::unique_ptr<fcl::CollisionObjectd> placed(Shapes& shapes, const Instance& instance) {
+  const RigidPose pose = rigidPose(instance.worldFromMesh);
+  return std::make_unique<fcl::CollisionObjectd>(shapes.of(instance.mesh, pose), transformOf(pose));
+}
+
 struct Check {
   const Query* query = nullptr;
   bool meets = false;
@@ -52,12 +61,43 @@ bool checkPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
   return check.meets;
 }
 
+bool measurePair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data, double& least) {
+  auto& nearest = *static_cast<double*>(data);
+  fcl::DistanceRequestd request;
+  fcl::DistanceResultd result;
+  // A negative one says that they meet.
+  nearest = std::min(nearest, std::max(0.0, fcl::distance(a, b, request, result)));
+  least = nearest;
+  return nearest == 0;
+}
+
+class FclDistances : public Distances {
+ public:
+  explicit FclDistances(const Workload& workload) : shapes_(workload, modelOf) {
+    for (uint32_t i = 0; i < workload.objectCount(0); ++i) {
+      objects_.push_back(placed(shapes_, workload.instance(0, i)));
+      manager_.registerObject(objects_.back().get());
+    }
+    manager_.setup();
+  }
+  double of(const Instance& body) override {
+    double nearest = std::numeric_limits<double>::infinity();
+    manager_.distance(placed(shapes_, body).get(), &nearest, measurePair);
+    return nearest;
+  }
+
+ private:
+  Shapes shapes_;
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
+  fcl::DynamicAABBTreeCollisionManagerd manager_;
+};
+
 class Fcl : public SceneBaseline {
  public:
   Fcl(const Workload& workload, uint32_t steps) : shapes_(workload, modelOf), steps_(steps) {}
 
   std::optional<double> cast(const Query& query) override {
-    const std::unique_ptr<fcl::CollisionObjectd> sensor = placed({query.mesh, query.worldFromMesh});
+    const std::unique_ptr<fcl::CollisionObjectd> sensor = placed(shapes_, {query.mesh, query.worldFromMesh});
     const fcl::Vector3d start = sensor->getTranslation();
     const Vec3 v = unitDirection(query);
     return steppedContact(query.distance, steps_, [&](double t) {
@@ -70,11 +110,6 @@ class Fcl : public SceneBaseline {
   }
 
  private:
-  std::unique_ptr<fcl::CollisionObjectd> placed(const Instance& instance) {
-    const RigidPose pose = rigidPose(instance.worldFromMesh);
-    return std::make_unique<fcl::CollisionObjectd>(shapes_.of(instance.mesh, pose), transformOf(pose));
-  }
-
   void begin(size_t count) override {
     manager_ = std::make_unique<fcl::DynamicAABBTreeCollisionManagerd>();
     objects_.clear();
@@ -83,7 +118,7 @@ class Fcl : public SceneBaseline {
 
   void place(size_t number, const Instance& instance, bool anew) override {
     if (!anew) manager_->unregisterObject(objects_[number].get());
-    objects_[number] = placed(instance);
+    objects_[number] = placed(shapes_, instance);
     objects_[number]->setUserData(reinterpret_cast<void*>(number + 1));
     if (!anew) manager_->registerObject(objects_[number].get());
   }
@@ -96,13 +131,17 @@ class Fcl : public SceneBaseline {
     manager_->setup();
   }
 
-  ShapeCache<std::shared_ptr<Model>> shapes_;
+  Shapes shapes_;
   uint32_t steps_;
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
   std::unique_ptr<fcl::DynamicAABBTreeCollisionManagerd> manager_;
 };
 
 }  // namespace
+
+std::unique_ptr<Distances> makeDistances(const Workload& workload) {
+  return std::make_unique<FclDistances>(workload);
+}
 
 std::vector<BaselineRow> fclRows() {
   return {{.family = "FCL steps",

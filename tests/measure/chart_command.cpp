@@ -53,7 +53,7 @@ TEST_CASE("chart measures only the sections that are named") {
     }
   }
   CHECK_THAT(folder.read("c/turns.csv"),
-             Contains("\nboxes,turning by 30 degrees,64,") && Contains("\narm, up to 1 rad"));
+             Contains("\nboxes,turning by 30 degrees,64,") && Contains("arm, up to 1 rad a joint\",all,"));
   CHECK_THAT(folder.read("c/growth-boxes.svg"), Contains("More of the scene"));
   CHECK_THAT(folder.read("c/growth.csv"), Contains("\ngrowth-sensors,contact,1,"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "c/front.csv"));

@@ -10,6 +10,7 @@
 #include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
 #include "support/catch.h"
+#include "support/seeds.h"
 #include "workloads/shapes.h"
 
 using namespace radar;
@@ -245,7 +246,8 @@ TEST_CASE("a chain of one joint turns as a turn does, and one of three slides as
 }
 
 TEST_CASE("random chains meet nothing before lo, and certainly something at hi") {
-  Random random(GENERATE(1u, 2u, 3u));
+  const uint32_t seed = GENERATE(from_range(test::seeds({1, 2, 3})));
+  Random random(seed);
   int statuses[5] = {}, links = 0, wide = 0;
   for (int trial = 0; trial < 150; ++trial) {
     const double size = random.magnitude(-4, 4);
@@ -317,7 +319,7 @@ TEST_CASE("random chains meet nothing before lo, and certainly something at hi")
     links += answer.otherLink != kNone;
     const Truth truth(chain, query, scene);
     const double rounding = 1e-10 * size + 1e-13 * far;
-    CAPTURE(trial, size, far, count, found.lo, found.hi, query.clearance, static_cast<uint32_t>(found.status));
+    CAPTURE(seed, trial, size, far, count, found.lo, found.hi, query.clearance, static_cast<uint32_t>(found.status));
     const double free = found.status == Status::clear ? 1 : found.lo;
     for (int k = 0; k <= 60 && free > 0; ++k) REQUIRE(!truth.meet((1 - 1e-12) * free * k / 60, rounding));
     if (isContact(found)) REQUIRE(truth.meet(found.hi, query.clearance > 0 ? -rounding : 0));
@@ -327,8 +329,8 @@ TEST_CASE("random chains meet nothing before lo, and certainly something at hi")
     const Result any = answerOf(scene, chain, query).contact;
     CHECK((any.status == Status::hit) == isContact(found));
   }
-  CAPTURE(statuses[0], statuses[1], statuses[2], statuses[3], statuses[4], links);
-  CHECK(statuses[static_cast<size_t>(Status::hit)] > 12);
+  CAPTURE(seed, statuses[0], statuses[1], statuses[2], statuses[3], statuses[4], links);
+  CHECK(statuses[static_cast<size_t>(Status::hit)] > 5);
   CHECK(statuses[static_cast<size_t>(Status::clear)] > 15);
   CHECK(links > 0);
   CHECK(statuses[static_cast<size_t>(Status::undecided)] == 0);

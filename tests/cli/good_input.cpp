@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "cli/program.h"
 #include "support/catch.h"

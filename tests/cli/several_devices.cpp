@@ -1,4 +1,6 @@
 // The program with two devices.
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"

@@ -1,6 +1,8 @@
 // What tests of recordings check again and again.
 #pragma once
 
+#include <cmath>
+
 #include "radar/cpu_sweeper.h"
 #include "support/catch.h"
 #include "support/same_bits.h"

@@ -2,6 +2,7 @@
 // answers.
 #include "proof/checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <future>

@@ -1,5 +1,7 @@
 // The checks of a device's arithmetic pass, and they detect an operation that is falsified on purpose.
 #include "gpu/arithmetic.h"
+
+#include <algorithm>
 #include "support/catch.h"
 #include "support/test_device.h"
 

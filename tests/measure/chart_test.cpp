@@ -1,5 +1,6 @@
 #include "measure/chart.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "support/answer.h"

@@ -1,5 +1,6 @@
 // radar-lab host, as a person runs it, and the model that it prints.
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <sstream>
 

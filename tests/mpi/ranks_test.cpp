@@ -1,4 +1,5 @@
 // cyber-radar-mpi on this machine, with more ranks than cores.
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <sstream>
 

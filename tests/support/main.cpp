@@ -1,5 +1,7 @@
 // Runs Catch2, and fails the running test on any message of the validation layers.
 #if __has_include(<catch2/catch_all.hpp>)
+#include <cstdio>
+
 #include <catch2/catch_all.hpp>
 #else
 #define CATCH_CONFIG_RUNNER

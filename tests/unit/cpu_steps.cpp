@@ -1,5 +1,7 @@
 // Steps, in which objects move, too: their frames, limits and contracts.
 #include "brute_force.h"
+
+#include <limits>
 #include "radar/cpu_sweeper.h"
 #include "radar/displacement.h"
 #include "scene_kinds.h"

@@ -1,5 +1,6 @@
 // Compares the contact interval of two triangles with separating axes in exact rationals.
 #include <algorithm>
+#include <limits>
 
 #include "distances.h"
 #include "exact/common_point.h"

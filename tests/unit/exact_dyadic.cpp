@@ -1,4 +1,5 @@
 // Compares the integers and double-doubles of engine/exact with Boost's rationals.
+#include <bit>
 #include <limits>
 
 #include "exact/double_double.h"

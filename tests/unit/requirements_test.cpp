@@ -1,5 +1,7 @@
 // The reasons why made-up devices are unsupported.
 #include "gpu/requirements.h"
+
+#include <algorithm>
 #include "radar/radar.h"
 #include "spirv/radar_shaders.h"
 #include "support/catch.h"

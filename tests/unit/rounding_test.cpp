@@ -1,5 +1,6 @@
 // Rounding of doubles to floats in a given direction.
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <random>
 

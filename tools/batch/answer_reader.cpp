@@ -1,5 +1,6 @@
 #include "batch/answer_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 

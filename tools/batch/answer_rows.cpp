@@ -1,5 +1,6 @@
 #include "batch/answer_rows.h"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 

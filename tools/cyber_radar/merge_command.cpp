@@ -1,4 +1,6 @@
 #include "batch/merge.h"
+
+#include <memory>
 #include "batch/outputs.h"
 #include "cyber_radar/commands.h"
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "import/json_input.h"
 #include "import/text.h"

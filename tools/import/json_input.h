@@ -1,6 +1,7 @@
 // JSON read strictly.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>

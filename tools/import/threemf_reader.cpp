@@ -2,6 +2,7 @@
 #include <expat.h>
 
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <map>
@@ -22,6 +23,14 @@ constexpr std::string_view kMaterial = "http://schemas.microsoft.com/3dmanufactu
 constexpr uint32_t kMostNodes = 1u << 20, kMostNested = 100;
 
 using Attributes = std::map<std::string_view, std::string_view>;
+
+uint64_t line(XML_Parser parser) {
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9  // which warn of the other
+  return XML_GetCurrentLineNumber64(parser);
+#else
+  return XML_GetCurrentLineNumber(parser);
+#endif
+}
 
 /// Calls `begin` with each element and its attributes, named as namespace|name, and `declare` with each prefix and its
 /// namespace.
@@ -63,7 +72,7 @@ class XmlReader {
   }
 
   [[noreturn]] void refuse(const std::string& problem) const {
-    throw InputError(file_, printable(part_) + ": line " + std::to_string(XML_GetCurrentLineNumber(parser_)), problem);
+    throw InputError(file_, printable(part_) + ": line " + std::to_string(line(parser_)), problem);
   }
 
  private:

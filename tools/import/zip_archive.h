@@ -1,6 +1,7 @@
 // Zip archives in memory, also of 64-bit sizes and of files whose sizes follow them.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>

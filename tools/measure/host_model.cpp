@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "radar/error.h"
 
@@ -14,14 +15,14 @@ constexpr std::array kDevices{MeasuredDevice{"boxes", 1'024, 0.8}, MeasuredDevic
                               MeasuredDevice{"teapots", 65'536, 0.092}};
 
 // The row of one thread with the largest batch up to `most`.
-const Json& rowFor(const Json& rows, const std::string& workload, uint32_t most) {
+const Json& rowFor(const Json& rows, std::string_view workload, uint32_t most) {
   const Json* best = nullptr;
   for (const Json& row : rows) {
     if (row["workload"] != workload || row["threads"] != 1 || row["batch"] > most) continue;
     if (best == nullptr || row["batch"] > (*best)["batch"]) best = &row;
   }
   if (best == nullptr) {
-    throw Error("expected a measured batch of " + workload + " of at most " + std::to_string(most) +
+    throw Error("expected a measured batch of " + std::string(workload) + " of at most " + std::to_string(most) +
                 " queries, on one thread, got none");
   }
   return *best;

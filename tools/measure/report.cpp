@@ -10,6 +10,7 @@
 #include <numeric>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "batch/atomic_file.h"
 #include "commit/commit.h"

@@ -1,6 +1,7 @@
 // Frames: the agents move, and all is drawn, in one command buffer.
 #pragma once
 
+#include <cstdio>
 #include <functional>
 
 #include "agents.h"

@@ -223,7 +223,7 @@ Opened openHandles(const DeviceOptions& options, bool wantsStatistics) {
   auto owned = openInstance(options.onValidation);
   HostDevice host = hostOf(owned->vk, owned->instance, physicalDevices(owned->vk, owned->instance), options.index);
   host.doubles = options.doubles && host.doubles;
-  host.debugNames = options.onValidation != nullptr;
+  host.debugNames = options.debugNames && options.onValidation != nullptr;
   host.onCompiling = options.onCompiling;
   const float priority = 1.0f;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,

@@ -220,6 +220,13 @@ TEST_CASE("hostOf() refuses no instance, and a device that lacks what mode conta
   }
 }
 
+TEST_CASE("a device that is opened has debug names if messages of validation are heard and names are wanted") {
+  const auto named = [](const DeviceOptions& options) { return Device::open(options).impl().host.debugNames; };
+  CHECK(named({.onValidation = test::onValidation}));
+  CHECK_FALSE(named({.onValidation = test::onValidation, .debugNames = false}));
+  CHECK_FALSE(named({}));
+}
+
 TEST_CASE("opening a device that does not exist throws and names its number") {
   CHECK_THROWS_WITH(Device::open({.index = 1000}), test::Contains("device 1000 does not exist"));
 }

@@ -106,7 +106,7 @@ TEST_CASE("a query that exceeds Capacity::rounds gets Flag::rounds, and a short 
 }
 
 TEST_CASE("rounds are brief on a GPU, and enough of them suffice", "[subgroups]") {
-  const Device device = test::open();
+  const Device device = Device::open(test::deviceOptions());
   const Batch batch = hardBatch("soup");
   const auto unfinished = [&](uint32_t rounds) {
     const Capacity capacity{.queries = 48, .candidates = 1u << 17, .rounds = rounds, .unresolvedPairs = 1u << 17};

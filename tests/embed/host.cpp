@@ -119,7 +119,7 @@ Host::~Host() {
 Device Host::own() const {
   HostDevice unwatched = withoutMemory();
   unwatched.getInstanceProcAddr = vkGetInstanceProcAddr;
-  unwatched.debugNames = false;  // test::open() says why
+  unwatched.debugNames = false;  // DeviceOptions::debugNames says why
   return Device::adopt(unwatched);
 }
 

@@ -50,7 +50,7 @@ VKAPI_ATTR VkResult VKAPI_CALL compilesUntilTold(VkDevice, VkPipelineCache, uint
 VKAPI_ATTR void VKAPI_CALL doesNothing(VkCommandBuffer, uint32_t, uint32_t, uint32_t) {}
 
 Device ownDevice() {
-  return test::open();
+  return Device::open(test::deviceOptions());
 }
 
 /// A device whose memory begins with zeros: what no shader writes is the same everywhere.
@@ -194,7 +194,7 @@ TEST_CASE("a device that compiles for longer than its host waits is given up") {
     waited = seconds;
     return seconds < 2;
   };
-  const Device device = test::open(options);
+  const Device device = Device::open(options);
   device.impl().vk.CreateComputePipelines = compilesUntilTold;
   const Error error = errorOf([&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); });
   CHECK_THAT(error.what(), test::Contains(" has not compiled " + shader + " in 2 s, and is given up"));

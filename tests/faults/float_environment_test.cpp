@@ -111,7 +111,7 @@ AllAnswers answersIn(const InEnvironment& in) {
   AllAnswers answers;
   CpuSweeper cpu(scene);
   answers.cpu = in([&] { return cpu.run(queries); });
-  const Device device = in([] { return test::open(); });
+  const Device device = in([] { return Device::open(test::deviceOptions()); });
   CHECK(device.doubles() == test::device().doubles());
   for (const ArithmeticCheck& check : in([&] { return checkArithmetic(device); })) CHECK(check.passed());
   Sweeper sweeper = in([&] { return Sweeper(device, scene, {.cpuBatch = 0}); });
@@ -125,7 +125,7 @@ AllAnswers answersIn(const InEnvironment& in) {
   submission.submitAndWait();
   answers.recorded = in([&] { return recorder.read(); });
   std::vector<Device> devices;
-  devices.push_back(in([&] { return test::open(); }));
+  devices.push_back(in([&] { return Device::open(test::deviceOptions()); }));
   Scene posed;  // a pool reads no other than its own
   in([&] { edits.make(posed); });
   in([&] { addOddMeshes(posed); });

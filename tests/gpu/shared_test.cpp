@@ -33,7 +33,7 @@ struct FailsAtFirst {
 
 TEST_CASE("a shared object is created once per device, for all callers and threads, and destroyed with the device") {
   {
-    const Device own = test::open();
+    const Device own = Device::open(test::deviceOptions());
     std::array<const Counted*, 8> found{};
     std::vector<std::thread> threads;
     threads.reserve(found.size());

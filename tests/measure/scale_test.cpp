@@ -62,7 +62,7 @@ TEST_CASE("the table tells what is gained, and where the devices' time went") {
 }
 
 TEST_CASE("a measured workload accounts for all time and all queries, with the same bits on every set of devices") {
-  const std::vector<Device> devices = openDevices({}, {.onValidation = test::onValidation});
+  const std::vector<Device> devices = openDevices({}, {.onValidation = test::onValidation, .debugNames = false});
   std::vector<ScalePoint> points;
   for (const uint32_t teapots : {2u, 4u}) {
     points.push_back({double(teapots), makeWorkload(Figure7{.teapots = teapots, .boxes = 100, .steps = 2})});

@@ -91,18 +91,12 @@ bool wantsDoubles() {
 }
 
 DeviceOptions deviceOptions() {
-  return {.index = testedDevices()[0], .onValidation = onValidation, .doubles = wantsDoubles()};
-}
-
-Device open(const DeviceOptions& options) {
-  Device opened = Device::open(options);
-  opened.impl().host.debugNames = false;
-  return opened;
+  return {.index = testedDevices()[0], .onValidation = onValidation, .debugNames = false, .doubles = wantsDoubles()};
 }
 
 const Device& device() {
   return onceInRun([] {
-    Device opened = open();
+    Device opened = Device::open(deviceOptions());
     if (settingOf("RADAR_TEST_KIND", "") == "gpu") {
       opened.impl().properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     }

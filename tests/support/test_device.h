@@ -23,11 +23,8 @@ bool isLavapipe();
 bool isValidated();
 /// Whether the device has doubles and may use them: not if the environment variable RADAR_TEST_DOUBLES is "off".
 bool wantsDoubles();
-/// Of the first tested device; messages of the validation layers go to onValidation().
+/// Of the first tested device, without debug names and labels; messages of the validation layers go to onValidation().
 DeviceOptions deviceOptions();
-/// Device::open(), but without debug names and labels: the layer of Debian 12 (1.3.239) may erase the labels of a
-/// command buffer while another begins one, and crash.
-Device open(const DeviceOptions& options = deviceOptions());
 /// So opened on first use; said to be a GPU if the environment variable RADAR_TEST_KIND is "gpu".
 const Device& device();
 

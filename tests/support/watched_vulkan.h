@@ -9,7 +9,8 @@
 
 namespace radar::test {
 
-/// The loader, for HostDevice::getInstanceProcAddr. Labels are counted, but reach no driver (test::open() says why).
+/// The loader, for HostDevice::getInstanceProcAddr. Labels are counted, but reach no driver (DeviceOptions::debugNames
+/// says why).
 PFN_vkGetInstanceProcAddr watchedLoader();
 
 /// Whether an engine has looked a function up since the program began.

@@ -20,8 +20,10 @@ void Answerer::open(AnswerMode mode) {
   if (sweeper_ || pool_) return;
   const SweeperOptions options{
       .timestamps = options_.timestamps, .cpuBatch = options_.cpuBatch, .cpuThreads = options_.threads};
-  const DeviceOptions device{
-      .index = options_.device, .onValidation = options_.onValidation, .onCompiling = options_.onCompiling};
+  const DeviceOptions device{.index = options_.device,
+                             .onValidation = options_.onValidation,
+                             .debugNames = false,
+                             .onCompiling = options_.onCompiling};
   if (options_.pool) {
     devices_ = openDevices(*options_.pool, device);
     pool_.emplace(devices_, scene_, options);

@@ -141,6 +141,9 @@ struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
   /// Receives each warning or error of active validation layers, on any thread.
   std::function<void(const std::string&)> onValidation{};
+  /// With onValidation: as HostDevice::debugNames, for messages and captures. Debian 12's layer (1.3.239) may erase the
+  /// labels of a command buffer while another begins one, and crash.
+  bool debugNames = true;
   bool doubles = true;  ///< false: do not use them, as if shaderFloat64 were missing
   OnCompiling onCompiling{};
 };

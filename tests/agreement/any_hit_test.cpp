@@ -1,9 +1,11 @@
-// Queries that ask "within D or not" only.
+// Queries that ask "within D or not" only, and options that change nothing.
 #include <cmath>
 
 #include "support/catch.h"
+#include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/hard_cases.h"
+#include "workloads/query_fields.h"
 #include "workloads/shapes.h"
 
 namespace {
@@ -43,6 +45,27 @@ TEST_CASE("in mode sampled a decision is that of the whole answer") {
     CHECK(decided[i].hi >= whole[i].hi);
     CHECK(decided[i].hi <= queries[i].distance);
   }
+}
+
+TEST_CASE("in mode sampled, options that are said to change nothing change no bit, and are not refused") {
+  tools::Workload workload = tools::hardScene(tools::hardFamily("touching"), 3, 0, 64, tools::Company::mixed);
+  Scene scene;
+  tools::replaceBy(workload, 0, scene);
+  Sweeper sweeper(test::device(), scene);
+  const auto answers = [&] { return sweeper.run(tools::queriesOf(workload.queries, 64), Mode::sampled); };
+  const Answers before = answers();
+  size_t idle = 0;
+  for (const tools::QueryField& field : tools::queryFields()) {
+    if (field.sampled != tools::QueryField::Sampled::idle) continue;
+    ++idle;
+    for (tools::QuerySpec& query : workload.queries) {
+      REQUIRE(tools::setValue(query, field, tools::sensorSize(scene, query) / 16));
+      CHECK(tools::exactOnly(query) == nullptr);
+    }
+    CAPTURE(field.name);
+    CHECK(test::differenceOf(answers(), before) == "");
+  }
+  CHECK(idle == 2);
 }
 
 TEST_CASE("a decision on a deep overlap costs a fraction of the whole answer") {

@@ -14,6 +14,9 @@ const QuerySpec kUsual;
 constexpr double kAboveZero = std::numeric_limits<double>::denorm_min(),
                  kInfinity = std::numeric_limits<double>::infinity(), kNone = std::numeric_limits<double>::quiet_NaN();
 
+using Sampled = QueryField::Sampled;
+constexpr const char* kSampledWords[] = {"yes", "changes nothing", "no"};
+
 constexpr QueryField kFields[] = {
     {.name = "any_hit",
      .member = &Query::anyHit,
@@ -33,20 +36,21 @@ constexpr QueryField kFields[] = {
      .member = &Query::ignoreLeaving,
      .about = "Counts only what blocks: the sensor may leave what it rests on, or slide along it",
      .cast = true,
-     .sampled = false,
+     .sampled = Sampled::no,
      .option = true},
     {.name = "skip_overlapping",
      .member = &Query::skipOverlapping,
      .about = "Leaves out, and lists, objects whose surfaces cross the sensor's at the start",
      .lists = true,
      .cast = true,
-     .sampled = false,
+     .sampled = Sampled::no,
      .option = true},
     {.name = "slack",
      .member = &Query::slack,
      .about = "With ignore_leaving or skip_overlapping: how far rounding may have sunk surfaces that touch into each "
               "other; else derived from the coordinates",
      .cast = true,
+     .sampled = Sampled::idle,
      .option = true},
     {.name = "hits",
      .member = &Query::hits,
@@ -56,20 +60,21 @@ constexpr QueryField kFields[] = {
      .word = "all",
      .lists = true,
      .cast = true,
-     .sampled = false,
+     .sampled = Sampled::no,
      .option = true},
     {.name = "clearance",
      .member = &Query::clearance,
      .about = "Counts as contact when the surfaces come within this distance of each other",
      .cast = true,
-     .sampled = false,
+     .sampled = Sampled::no,
      .option = true},
     {.name = "tolerance",
      .member = &Query::tolerance,
      .about =
          "With a clearance: how narrow the bracket of the distance is to be; else 1e-6 of the sensor's size, or of the "
          "clearance if that is more",
-     .cast = true},
+     .cast = true,
+     .sampled = Sampled::idle},
 };
 
 std::string defaultOf(const QueryField& field) {
@@ -135,14 +140,14 @@ std::string expectedFor(const QueryField& field) {
 
 const QueryField* exactOnly(const QuerySpec& query) {
   for (const QueryField& field : kFields) {
-    if (!field.sampled && isGiven(query, field)) return &field;
+    if (field.sampled == Sampled::no && isGiven(query, field)) return &field;
   }
   return nullptr;
 }
 
 QuerySpec sampledPartOf(QuerySpec query) {
   for (const QueryField& field : kFields) {
-    if (!field.sampled) std::visit([&](auto member) { query.*member = kUsual.*member; }, field.member);
+    if (field.sampled == Sampled::no) std::visit([&](auto member) { query.*member = kUsual.*member; }, field.member);
   }
   query.turn.reset();
   if (query.motion) setDisplacement(query, *query.motion, Mode::sampled, false);
@@ -157,7 +162,7 @@ std::string queryFieldTable() {
   std::string text = "| option | value | default | in mode `sampled` | |\n|---|---|---|---|---|\n";
   for (const QueryField& field : kFields) {
     text += "| `" + std::string(field.name) + "` | " + expectedFor(field) + " | " + defaultOf(field) + " | " +
-            (field.sampled ? "yes" : "no") + " | " + field.about + " |\n";
+            kSampledWords[static_cast<size_t>(field.sampled)] + " | " + field.about + " |\n";
   }
   return text;
 }

@@ -23,8 +23,9 @@ struct QueryField {
   const char* word = nullptr;  ///< stands for the number after `most`; in a column, 0 does
   bool lists = false;          ///< given, it makes the answer list something
   bool cast = false;           ///< a keyword of Python's Scene.cast, too
-  bool sampled = true;         ///< mode sampled offers it
-  bool option = false;         ///< of the command sweep
+  /// In mode sampled, which refuses `no`; `idle` changes nothing there, as without the options that it is about.
+  enum class Sampled { yes, idle, no } sampled = Sampled::yes;
+  bool option = false;  ///< of the command sweep
 
   /// 'b' true or false, 'u' whole number, 'f' number, 'o' ids of objects
   char kind() const { return "buffo"[member.index()]; }
@@ -41,7 +42,7 @@ bool isGiven(const QuerySpec& query, const QueryField& field);
 /// Words for messages: what the field takes.
 std::string expectedFor(const QueryField& field);
 
-/// The first field given that mode sampled does not offer, or null.
+/// The first field given that mode sampled refuses, or null.
 const QueryField* exactOnly(const QuerySpec& query);
 /// The query without these, and with a motion made a sweep: what mode sampled answers of it where no object moves.
 QuerySpec sampledPartOf(QuerySpec query);

@@ -190,14 +190,15 @@ def test_the_compiled_half_refuses_arrays_that_do_not_fit(boxes):
     }
     records = cyber_radar.Casts.empty((4,)).records
     options = dict.fromkeys(cyber_radar._engine.OPTIONS, 1.0) | {"any_hit": False, "mode": "contact", "resolution": 0}
-    engine.cast((4,), of_casts | {"distances": None}, options, records, None)
+    engine.cast((4,), of_casts, options, records, None)
+    of_casts |= {"turns: axes": np.ones((4, 3)), "turns: angles": np.ones(4), "turns: centres": np.ones((4, 3))}
     for wrong in of_casts:
-        arguments = of_casts | {"distances": None, wrong: of_casts[wrong][:2]}
+        arguments = of_casts | {wrong: of_casts[wrong][:2]}
         with pytest.raises(ValueError):
             engine.cast((4,), arguments, options, records, None)
     for wrong in (records[:2], np.zeros(4, records.dtype.str), cyber_radar.Casts.empty((8,)).records[::2]):
         with pytest.raises(ValueError, match="records: expected"):
-            engine.cast((4,), of_casts | {"distances": None}, options, wrong, None)
+            engine.cast((4,), of_casts, options, wrong, None)
 
 
 def test_poses_may_lack_their_last_row(boxes):

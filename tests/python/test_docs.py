@@ -14,7 +14,7 @@ import pytest
 
 import cyber_radar
 from conftest import FACES, box
-from cyber_radar import _engine, _scene
+from cyber_radar import _engine, _scene, _turns
 
 ROOT = pathlib.Path(__file__).parents[2]
 PACKAGE = pathlib.Path(cyber_radar.__file__).parent
@@ -51,8 +51,9 @@ def prints_what_it_says(script: str, folder: pathlib.Path, command: list[str]) -
 
 
 def test_doctests():
-    results = doctest.testmod(_scene, extraglobs={"np": np})
-    assert results.attempted >= 5 and results.failed == 0
+    for module, examples_at_least in ((_scene, 5), (_turns, 4)):
+        results = doctest.testmod(module, extraglobs={"np": np})
+        assert results.attempted >= examples_at_least and results.failed == 0
 
 
 def test_everything_public_has_a_docstring_and_types():

@@ -99,7 +99,13 @@ void Reader::next(Query& query) {
   std::array<double, 3> way;
   read(input_.displacements, way.data(), 3);
   readOptions(query);
-  if (input_.distances.data) {
+  if (input_.axes.data) {
+    Turn& turn = query.turn.emplace();
+    read(input_.axes, turn.axis.data(), 3);
+    read(input_.angles, &turn.angle, 1);
+    read(input_.centres, turn.centre.data(), 3);
+    query.motion = way;
+  } else if (input_.distances.data) {
     query.direction = way;
     read(input_.distances, &query.distance, 1);
   } else {
@@ -117,9 +123,9 @@ void Reader::next(Query& query) {
 /// A query's broken contract in the words of the arguments; empty if it is kept.
 std::string wrongWith(const Query& query, const Scene& scene, AnswerMode mode) {
   std::string wrong = validate(query, scene, modeOf(mode));
-  for (const auto& [engine, argument] :
-       {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
-        std::pair{"motion: ", "displacements: "}, std::pair{"distance: ", "distances: "}}) {
+  for (const auto& [engine, argument] : {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
+                                         std::pair{"motion: ", "displacements: "},
+                                         std::pair{"distance: ", "distances: "}, std::pair{"turn: ", "turns: "}}) {
     if (wrong.rfind(engine, 0) == 0) return argument + wrong.substr(std::strlen(engine));
   }
   return wrong;

@@ -19,13 +19,14 @@ struct PerQuery {
 };
 
 struct BatchInput {
-  std::vector<size_t> shape;  ///< of the leading dimensions
-  PerQuery meshes;            ///< uint32_t
-  PerQuery poses;             ///< 16 doubles; the last row is 0 0 0 1
-  PerQuery displacements;     ///< 3 doubles
-  PerQuery distances;         ///< double; without data, each goes to the end of its displacement
-  PerQuery masks;             ///< uint32_t
-  PerQuery excluded;          ///< int64_t, `excludedCount` of them; below 0: none
+  std::vector<size_t> shape;       ///< of the leading dimensions
+  PerQuery meshes;                 ///< uint32_t
+  PerQuery poses;                  ///< 16 doubles; the last row is 0 0 0 1
+  PerQuery displacements;          ///< 3 doubles
+  PerQuery distances;              ///< double; without data, each goes to the end of its displacement
+  PerQuery axes, angles, centres;  ///< 3 doubles, one, 3; without data, nothing turns
+  PerQuery masks;                  ///< uint32_t
+  PerQuery excluded;               ///< int64_t, `excludedCount` of them; below 0: none
   size_t excludedCount = 0;
   PerQuery leaving;             ///< bool; without data, as `options` says; likewise the next four
   PerQuery slacks, tolerances;  ///< double, NaN for none

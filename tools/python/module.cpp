@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "commit/commit.h"
@@ -11,6 +12,7 @@
 #include "python/batch.h"
 #include "python/page.h"
 #include "python/scene_methods.h"
+#include "radar/displacement.h"
 #include "view/page.h"
 #include "workloads/answer_fields.h"
 #include "workloads/query_fields.h"
@@ -119,15 +121,18 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   input.masks = perQuery<uint32_t>(masks, shape, 1, "mask");
   input.excludedCount = static_cast<size_t>(excluded.shape(excluded.ndim() - 1));
   input.excluded = perQuery<int64_t>(excluded, shape, input.excludedCount, "exclude_from_each");
-  py::array distances;
-  if (!arguments["distances"].is_none()) {
-    distances = argument("distances");
-    input.distances = perQuery<double>(distances, shape, 1, "distances");
-  }
   std::vector<py::array> each;  // keeps the arrays alive
   const auto readEach = [&]<class T>(const char* name, PerQuery& to, T) {
     if (arguments.contains(name)) to = perQuery<T>(each.emplace_back(argument(name)), shape, 1, name);
   };
+  readEach("distances", input.distances, 0.0);
+  if (arguments.contains("turns: axes")) {
+    for (const auto& [name, to, width] : {std::tuple{"turns: axes", &input.axes, size_t{3}},
+                                          {"turns: angles", &input.angles, 1},
+                                          {"turns: centres", &input.centres, 3}}) {
+      *to = perQuery<double>(each.emplace_back(argument(name)), shape, width, name);
+    }
+  }
   readEach("ignore_leaving", input.leaving, false);
   readEach("slack", input.slacks, 0.0);
   readEach("tolerance", input.tolerances, 0.0);
@@ -202,6 +207,30 @@ py::tuple readAssembly(const std::filesystem::path& file, double scale) {
   return py::make_tuple(meshes, names, arrayOf(placed, {count}), arrayOf(transforms, {count, 4, 4}), warnings);
 }
 
+/// What _engine.pyi says of turn_between().
+py::tuple turnsBetween(const Array<double>& starts, const Array<double>& ends, const Array<double>& abouts) {
+  const auto count = py::ssize_t(starts.size() / 16);
+  requireCount(ends, "end", 16 * size_t(count));
+  requireCount(abouts, "about", 3 * size_t(count));
+  Array<double> axes({count, py::ssize_t(3)}), angles(count), centres({count, py::ssize_t(3)}),
+      motions({count, py::ssize_t(3)});
+  py::object wrong = py::none();
+  for (py::ssize_t i = 0; i < count && wrong.is_none(); ++i) {
+    const double* const about = abouts.data() + 3 * i;
+    try {
+      const auto [turn, motion] = turnBetween(transformFrom(starts.data() + 16 * i),
+                                              transformFrom(ends.data() + 16 * i), {about[0], about[1], about[2]});
+      std::ranges::copy(turn.axis, axes.mutable_data(i));
+      *angles.mutable_data(i) = turn.angle;
+      std::ranges::copy(turn.centre, centres.mutable_data(i));
+      std::ranges::copy(motion, motions.mutable_data(i));
+    } catch (const Error& error) {
+      wrong = py::make_tuple(i, error.what());
+    }
+  }
+  return py::make_tuple(axes, angles, centres, motions, wrong);
+}
+
 void registerErrors(py::module_& module) {
   static const py::handle error =
       PyErr_NewExceptionWithDoc("cyber_radar.Error",
@@ -253,5 +282,6 @@ PYBIND11_MODULE(_engine, module) {
   module.def("devices", &deviceReports);
   module.def("read_mesh", &readMesh);
   module.def("read_assembly", &readAssembly);
+  module.def("turn_between", &turnsBetween);
   module.def("take_validation_messages", &takeValidationMessages);
 }

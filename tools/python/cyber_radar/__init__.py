@@ -27,6 +27,7 @@ from ._casts import Casts, Feature, Hits, Overlapping, Status, Tier
 from ._engine import Error
 from ._files import read_mesh
 from ._scene import Objects, Scene
+from ._turns import Turns, turn_between
 from ._warnings import DeviceLostWarning, MeshFileWarning, RoundingWarning, ValidationWarning
 
 __version__: str = _engine.version
@@ -44,9 +45,11 @@ __all__ = [
     "Scene",
     "Status",
     "Tier",
+    "Turns",
     "ValidationWarning",
     "devices",
     "read_mesh",
+    "turn_between",
     "versions",
 ]
 

@@ -43,11 +43,10 @@ class Asked:
         shape: tuple[int, ...],
     ) -> Asked:
         count = int(np.prod(shape, dtype=np.int64))
-        arrays = {name: array for name, array in arguments.items() if array is not None}
         if count <= MOST_REMEMBERED:
-            return cls(make_page, object_names, arrays, np.arange(count).reshape(shape), shape)
+            return cls(make_page, object_names, arguments, np.arange(count).reshape(shape), shape)
         kept = _engine.MOST_SHOWN
-        arrays = {name: first(array, shape, kept) for name, array in arrays.items()}
+        arrays = {name: first(array, shape, kept) for name, array in arguments.items()}
         return cls(make_page, object_names, arrays, np.arange(kept), shape, True)
 
     def __getitem__(self, index: Any) -> Asked | None:

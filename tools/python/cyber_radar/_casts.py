@@ -24,7 +24,7 @@ class Status(enum.IntEnum):
     HIT = 0  #: certainly a contact; with any_hit, overlaps at the start, too
     CLEAR = 1  #: certainly none
     OVERLAP = 2  #: the surfaces meet at the start
-    UNDECIDED = 3  #: no contact before `lo`; only in mode "sampled" and with a clearance
+    UNDECIDED = 3  #: no contact before `lo`; only in mode "sampled", and with a clearance or turns
     INVALID = 4  #: not answered; Casts.reasons says why
 
 
@@ -53,7 +53,7 @@ _MOST_NAMED = 5  # objects in a line
 class Casts:
     """Answers, as views into `records`, an array of numpy's of the casts' leading shape (...). What is null in the words
     below is NaN, and -1 of ids; but t, lo, hi and fraction are inf where there certainly is no contact, and hi where
-    none is certain. Lengths are along the displacement (D), in world units. 120 bytes a cast, 136 in mode "sampled".
+    none is certain. Lengths are along the displacement (D), in world units; with turns, t, lo and hi are fractions. 120 bytes a cast, 136 in mode "sampled".
 
     An index into the leading shape gives the casts there, with all that they list, as numpy's index would: casts[3],
     casts[:, 0], casts[casts.touches]. len() and iteration go through the first dimension.
@@ -119,8 +119,8 @@ class Casts:
     def _page(self, title: str) -> str:
         if self._asked is None:
             raise ValueError(
-                "show: expected casts that Scene.cast() has answered, got some that were unpickled or made, or a part of "
-                f"more than {MOST_REMEMBERED:,}"
+                "show: expected casts that Scene.cast() has answered, got some with turns, that were unpickled or "
+                f"made, or a part of more than {MOST_REMEMBERED:,}"
             )
         shown = min(self.records.size, _engine.MOST_SHOWN)
         left_out: dict[int, list[int]] = {}

@@ -31,6 +31,7 @@ from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals
 from ._asked import Asked
 from ._casts import Casts, Hits, Overlapping, record_type, records_of
 from ._files import Path, file_mesh, vertices_at
+from ._turns import turn_arrays
 from ._warnings import DeviceLostWarning, MeshFileWarning, ValidationWarning, warn_of
 
 _ALL_BITS = MOST_MASK
@@ -241,10 +242,11 @@ class Scene:
         self,
         mesh: npt.ArrayLike,
         poses: npt.ArrayLike | None,
-        displacements: npt.ArrayLike,
+        displacements: npt.ArrayLike | None = None,
         *,
         mode: Mode = "contact",
         distances: npt.ArrayLike | None = None,
+        turns: tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike] | None = None,
         exclude_from_all: npt.ArrayLike = (),
         exclude_from_each: npt.ArrayLike | None = None,
         mask: npt.ArrayLike = _ALL_BITS,
@@ -265,9 +267,14 @@ class Scene:
         poses: (..., 4, 4) or (..., 3, 4) world from mesh at the start, affine; None: the identity.
         displacements: (..., 3) the way to go, its end included; world units, at most 2^1000. With a zero the mesh
             rests: only what is there at the start, or moves (set_motions), meets it.
-        Leading shapes broadcast together, also those of the next three; the result has the common shape.
+            None, with turns: the mesh turns on the spot.
+        Leading shapes broadcast together, also those of the next four; the result has the common shape.
 
         distances: (...) how far to go; displacements then give the direction alone.
+        turns: axes (..., 3), angles (...), radians, and centres (..., 3), or Turns: meanwhile the mesh turns, by the
+            right-hand rule, about an axis through the centre, which goes by the displacement. t, lo and hi are then
+            fractions of the step. turn_between() makes them of poses. Not with distances, ignore_leaving or mode
+            "sampled".
         exclude_from_each: (..., K) ids of objects to ignore, a row for each cast; -1 is none. ids[:, None] is one each.
         mask: (...) 32 bits; an object takes part if its mask shares one.
 
@@ -285,7 +292,7 @@ class Scene:
             world units; NaN in an array: derived from the coordinates.
         clearance: surfaces are in contact where their distance is at most this, world units: a ball is a point (a tiny
             triangle) with a clearance, a capsule a segment.
-        tolerance: with a clearance: how narrow hi - lo is to be, world units; NaN in an array: chosen.
+        tolerance: with a clearance or turns: how narrow hi - lo is to be, world units; NaN in an array: chosen.
         hits: list the first contacts with this many nearest objects, one each; "all", 0 in an array: all in reach.
 
         resolution: mode "sampled": pixels along the picture's longer side, up to 2048; 0: chosen.
@@ -308,17 +315,24 @@ class Scene:
         arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
             "mesh": (self._known_meshes(mesh), 0),
             "poses": (np.eye(4) if poses is None else _poses(poses, "poses"), 2),
-            "displacements": (reals(displacements, "displacements", (3,)), 1),
+            "displacements": (_ways(displacements, turns), 1),
             "mask": (whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK), 0),
             "exclude_from_each": (excluded, 1),
         }
         if distances is not None:
             arrays["distances"] = (reals(distances, "distances"), 0)
+        if turns is not None:
+            arrays |= turn_arrays(turns)
+            for name, is_given in (("distances", distances is not None), ("ignore_leaving", options["ignore_leaving"])):
+                if is_given:
+                    raise ValueError(f"{name}: expected none with turns")
+            if mode == "sampled":
+                raise ValueError('mode: expected "contact" or "reference" with turns, got "sampled"')
         arrays |= {name: (array, 0) for name, (array, _) in each.items()}
         shape = common_shape(arrays)
         if exclude_from_each is not None:
             refuse_one_each(np.shape(exclude_from_each), shape)
-        arguments: dict[str, Any] = {"distances": None}
+        arguments: dict[str, Any] = {}
         for name, (array, inner) in arrays.items():
             arguments[name] = np.broadcast_to(array, shape + array.shape[array.ndim - inner :])
         records = np.empty(shape, record_type(mode)) if out is None else records_of(out, shape, mode)
@@ -337,7 +351,7 @@ class Scene:
         for name in _engine.OPTIONS:
             value = {None: np.nan, "all": 0}.get(options[name], options[name])
             arguments.setdefault(name, np.broadcast_to(np.asarray(value, np.float64), shape))
-        casts._asked = Asked.of(self._page, self._names, arguments, shape)
+        casts._asked = None if turns is not None else Asked.of(self._page, self._names, arguments, shape)
         return casts
 
     def _page(self, *shown: Any) -> str:
@@ -444,6 +458,14 @@ class Scene:
             if unknown.size:
                 raise ValueError(f"{name}: expected ids of objects of the scene, got {unknown[0]}")
         return ids
+
+
+def _ways(displacements: npt.ArrayLike | None, turns: Any) -> npt.NDArray[np.float64]:
+    if displacements is not None:
+        return reals(displacements, "displacements", (3,))
+    if turns is None:
+        raise ValueError("displacements: expected numbers of shape (..., 3), or turns, got neither")
+    return np.zeros(3)
 
 
 _scenes: weakref.WeakSet[Scene] = weakref.WeakSet()

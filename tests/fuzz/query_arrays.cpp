@@ -66,6 +66,8 @@ std::vector<std::string> seeds() {
   return {
       rowsOf(way, directions, distances),
       rowsOf("('motion', '<f4', (3,)), ('scene', '<i2')", Floats{{0, 0, 4}, {0, 0, 0}}, std::array<int16_t, 2>{0, 1}),
+      rowsOf("('turn_axis', '<f4', (3,)), ('turn_angle', '<f8'), ('turn_centre', '<f4', (3,))", directions,
+             Doubles{1.5, -40}, Floats{{0, 0, 2}, {1, 0, 0}}),
       rowsOf(way + ", ('exclude', '<i8'), ('mask', '<u4'), ('', '|V1'), ('any_hit', '|b1')", directions, distances,
              std::array<int64_t, 2>{0, -1}, std::array{1u, ~0u}, "ab", std::array{false, true}),
       rowsOf(

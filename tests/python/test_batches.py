@@ -88,7 +88,12 @@ def as_queries(arrays: dict[str, np.ndarray]) -> list[dict]:
                 value = ["sampled", "contact", "reference"][value]
             if name == "hits" and value == 0:
                 value = "all"
-            query[name] = value
+            if name.startswith("turn_"):
+                query.setdefault("turn", {})[name[5:]] = value
+            else:
+                query[name] = value
+        if "angle" not in query.get("turn", {"angle": 0}):
+            del query["turn"]
         queries.append(query)
     return queries
 
@@ -116,6 +121,60 @@ def test_steps_are_arrays_of_motions(tmp_path):
     found = answer(tmp_path)
     write_world(tmp_path, queries=as_queries(steps))
     assert answer(tmp_path) == found
+
+
+def turn_arrays(count: int) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(67)
+    return {
+        "turn_axis": rng.normal(size=(count, 3)).astype(np.float32),
+        "turn_angle": rng.uniform(-3, 3, count),
+        "turn_centre": rng.uniform(-5, 5, (count, 3)),
+    }
+
+
+def test_turns_are_arrays_beside_motions_or_alone(tmp_path):
+    places = {name: array for name, array in some_arrays(100).items() if name in ("mesh", "pose", "tolerance")}
+    turns = turn_arrays(100)
+    some_turns = {**turns, "turn_angle": np.where(np.arange(100) % 3 == 0, np.nan, turns["turn_angle"])}
+    for queries in (places | turns, places | some_turns | {"motion": some_arrays(100)["dir"]}):
+        save(tmp_path / "q.npy", queries)
+        write_world(tmp_path, queries_file="q.npy")
+        found = answer(tmp_path)
+        write_world(tmp_path, queries=as_queries(queries))
+        assert answer(tmp_path) == found
+        assert {json.loads(line)["status"] for line in found.splitlines()} >= {"hit", "clear"}
+
+
+@pytest.mark.parametrize(
+    "name, value, words",
+    [
+        ("turn_axis", None, "q.npy: turn_axis: expected this column, which is missing"),
+        ("turn_angle", None, "q.npy: turn_angle: expected this column, which is missing"),
+        ("turn_centre", None, "q.npy: turn_centre: expected this column, which is missing"),
+        ("turn", np.zeros(9), "q.npy: turn: expected one of the columns mesh, pose, motion, turn_axis, turn_angle, turn_c"),
+        ("turn_axis", np.zeros((9, 4)), "q.npy: turn_axis: expected float32 or float64 of shape (3,), got float64 of"),
+        ("turn_axis", np.zeros((9, 3)), "q.npy: turn_axis[0]: expected a vector that is not zero"),
+        ("turn_axis", np.full((9, 3), np.inf), "q.npy: turn_axis[0]: expected finite numbers, got inf"),
+        ("turn_angle", np.full(9, np.nan), 'q.npy: turn_angle[0]: expected a finite number, or nan beside "motion"'),
+        ("turn_angle", np.full(9, -1e5), "q.npy: turn_angle[0]: expected a number of at most 2^16"),
+        ("turn_angle", np.full(9, -np.inf), "q.npy: turn_angle[0]: expected finite numbers, got -inf"),
+        ("turn_centre", np.full((9, 3), 1e300), "q.npy: turn_centre[0]: expected numbers of at most 2^800"),
+        ("motion", np.full((9, 3), 1e250), "q.npy: motion[0]: expected numbers of at most 2^800 beside a turn"),
+        ("D", np.zeros(9), 'q.npy: turn_angle: expected either "dir" and "D" or "turn_angle", got both'),
+        ("speed", np.ones(9), "q.npy: speed[0]: expected none beside a turn"),
+        ("ignore_leaving", np.ones(9, bool), "q.npy: ignore_leaving[0]: expected none beside a turn"),
+        ("mode", np.zeros(9, np.uint8), 'q.npy: mode[0]: expected contact or reference, as "turn" needs'),
+    ],
+)  # fmt: skip
+def test_bad_columns_of_turns_are_refused_by_name_and_index(tmp_path, name, value, words):
+    arrays = {key: array for key, array in some_arrays(9).items() if key in ("mesh", "pose")} | turn_arrays(9)
+    if value is None:
+        del arrays[name]
+    else:
+        arrays[name] = value
+    save(tmp_path / "q.npy", arrays)
+    write_world(tmp_path, queries_file="q.npy")
+    assert words in refusal(tmp_path)
 
 
 @pytest.mark.parametrize("mode", ["contact", "sampled"])
@@ -219,7 +278,7 @@ def with_value(name: str, index, value) -> np.ndarray:
     [
         ("mesh", None, "q.npy: mesh: expected this column, which is missing"),
         ("D", None, "q.npy: D: expected this column, which is missing"),
-        ("d", np.zeros(20), "q.npy: d: expected one of the columns mesh, pose, motion, dir, D"),
+        ("d", np.zeros(20), "q.npy: d: expected one of the columns mesh, pose, motion, turn_axis, turn_a"),
         ("mesh", np.zeros(20), "q.npy: mesh: expected integers, got float64"),
         ("pose", np.zeros((20, 4, 4)), "q.npy: pose: expected float32 or float64 of shape (3, 4), got float64 of shape (4, 4)"),
         ("D", np.zeros((20, 1)), "q.npy: D: expected float32 or float64, got float64 of shape (1,)"),

@@ -407,6 +407,7 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
            {"/queries/0/turn/axis", "[0, 0, 0]", "queries[0].turn.axis: ", "not zero"},
            {"/queries/0/turn/angle", "7e4", "queries[0].turn.angle: ", "2^16"},
            {"/queries/0/turn/centre", "[0, 1e300, 0]", "queries[0].turn.centre[1]: ", "2^800"},
+           {"/queries/0/motion", "[0, 0, 1e250]", "queries[0].motion[2]: ", "2^800 beside \"turn\""},
            {"/queries/0/ignore_leaving", "true", "queries[0].ignore_leaving: ", "turn"},
            {"/queries/0/speed", "2", "queries[0].speed: ", "turn"},
            {"/queries/0/motion", "[0, 1e305, 0]", "queries[0].motion[1]: ", "2^1000"},
@@ -414,6 +415,34 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
            {"/queries/1/mode", R"("sampled")", "queries[1].mode: ", "\"motions\" needs"}}) {
     CAPTURE(pointer, value);
     CHECK_THAT(refused(pointer, value), StartsWith(path) && Contains(problem));
+  }
+}
+
+TEST_CASE("turns are written as columns of an array, and read as they were") {
+  Files files;
+  nlohmann::json file = goodFile();
+  for (nlohmann::json& query : file["queries"]) {
+    for (const char* straight : {"dir", "D", "speed", "mode"}) query.erase(straight);
+  }
+  file["queries"][0]["turn"] = nlohmann::json::parse(R"({"axis": [0, 2, 0.5], "angle": -3.5, "centre": [1, 2, 1e9]})");
+  for (const char* other :
+       {R"({"turn": {"axis": [0, 0, 0], "angle": 0, "centre": [0, 0, 3]}})", R"({"motion": [0, 0, 1]})"}) {
+    for (size_t i = 1; i < file["queries"].size(); ++i) file["queries"][i].merge_patch(nlohmann::json::parse(other));
+    const Workload workload = files.read(file.dump());
+    std::vector<std::string> warnings;
+    const Workload again = QueryFile(writeQueryFile(workload, files.folder.path() / "again", true), warnings).all();
+    REQUIRE(again.queries.size() == workload.queries.size());
+    for (size_t i = 0; i < workload.queries.size(); ++i) {
+      const QuerySpec &given = workload.queries[i], &read = again.queries[i];
+      const std::array<double, 3> rest{};
+      CHECK(read.motion.value_or(rest) == given.motion.value_or(rest));
+      REQUIRE(read.turn.has_value() == given.turn.has_value());
+      if (!given.turn) continue;
+      CHECK(read.turn->axis == given.turn->axis);
+      CHECK(read.turn->angle == given.turn->angle);
+      CHECK(read.turn->centre == given.turn->centre);
+    }
+    for (size_t i = 1; i < file["queries"].size(); ++i) file["queries"][i].erase("turn");
   }
 }
 

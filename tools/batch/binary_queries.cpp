@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
@@ -16,7 +17,7 @@ namespace radar::tools {
 
 namespace {
 
-constexpr double kLongestMotion = 0x1p1000;
+constexpr double kLongestMotion = 0x1p1000, kFarthestTurn = 0x1p800;
 
 std::string among(size_t count, const char* what) {
   return "a whole number that names one of the " + std::to_string(count) + " " + what + ", from 0";
@@ -34,10 +35,16 @@ BinaryQueries::BinaryQueries(const std::filesystem::path& file, const Workload& 
     return;
   }
   motion_ = column("motion", "f", {3}, false);
-  direction_ = column("dir", "f", {3}, !motion_);
-  distance_ = column("D", "f", {}, !motion_);
-  if (motion_ && (direction_ || distance_)) {
-    throw InputError(name_, "motion", "expected either \"dir\" and \"D\" or \"motion\", got both");
+  const bool turns =
+      std::ranges::any_of(columns_.all(), [](const Column& given) { return given.name.starts_with("turn_"); });
+  axis_ = column("turn_axis", "f", {3}, turns);
+  angle_ = column("turn_angle", "f", {}, turns);
+  centre_ = column("turn_centre", "f", {3}, turns);
+  const Column* const step = motion_ ? motion_ : angle_;
+  direction_ = column("dir", "f", {3}, !step);
+  distance_ = column("D", "f", {}, !step);
+  if (step && (direction_ || distance_)) {
+    throw InputError(name_, step->name, "expected either \"dir\" and \"D\" or \"" + step->name + "\", got both");
   }
   scene_ = column("scene", "iu", {}, false);
   batch_ = column("batch", "iu", {}, false);
@@ -95,16 +102,38 @@ uint64_t BinaryQueries::whole(const Column& column, uint64_t index, uint64_t mos
   return value;
 }
 
-void BinaryQueries::readMove(QuerySpec& query, uint64_t index) const {
-  if (motion_) {
-    std::array<double, 3>& motion = query.motion.emplace();
-    for (uint64_t k = 0; k < 3; ++k) motion[k] = finite(*motion_, index, k);
-    if (std::ranges::any_of(motion, [](double x) { return std::abs(x) > kLongestMotion; })) {
-      refuse(*motion_, index, "expected numbers of at most 2^1000");
-    }
+std::array<double, 3> BinaryQueries::vector(const Column& column, uint64_t index, double most,
+                                            const char* mostInWords) const {
+  std::array<double, 3> read{};
+  for (uint64_t k = 0; k < 3; ++k) read[k] = finite(column, index, k);
+  if (std::ranges::any_of(read, [&](double x) { return std::abs(x) > most; })) {
+    refuse(column, index, std::string("expected numbers of at most ") + mostInWords);
+  }
+  return read;
+}
+
+void BinaryQueries::readTurn(QuerySpec& query, uint64_t index) const {
+  if (!angle_) return;
+  if (std::isnan(angle_->real(index))) {
+    if (!motion_) refuse(*angle_, index, "expected a finite number, or nan beside \"motion\", got nan");
     return;
   }
-  for (uint64_t k = 0; k < 3; ++k) query.direction[k] = finite(*direction_, index, k);
+  Turn& turn = query.turn.emplace();
+  turn.angle = finite(*angle_, index);
+  if (std::abs(turn.angle) > 0x1p16) refuse(*angle_, index, "expected a number of at most 2^16");
+  turn.axis = vector(*axis_, index);
+  if (turn.angle != 0 && turn.axis == std::array<double, 3>{}) {
+    refuse(*axis_, index, "expected a vector that is not zero");
+  }
+  turn.centre = vector(*centre_, index, kFarthestTurn, "2^800");
+}
+
+void BinaryQueries::readMove(QuerySpec& query, uint64_t index) const {
+  readTurn(query, index);
+  if (motion_ && query.turn) query.motion = vector(*motion_, index, kFarthestTurn, "2^800 beside a turn");
+  if (motion_ && !query.turn) query.motion = vector(*motion_, index, kLongestMotion, "2^1000");
+  if (takesStep(query)) return;
+  query.direction = vector(*direction_, index);
   if (query.direction == std::array<double, 3>{}) refuse(*direction_, index, "expected a vector that is not zero");
   query.distance = finite(*distance_, index);
   if (query.distance < 0)
@@ -158,6 +187,7 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
     if (!fields_[i]) continue;
     readField(queryFields()[i], *fields_[i], index, query);
     if (query.hits > 1 && query.anyHit) refuse(*fields_[i], index, "expected 1 beside \"any_hit\"");
+    if (query.turn && (query.speed || query.ignoreLeaving)) refuse(*fields_[i], index, "expected none beside a turn");
   }
   if (mode_) {
     query.mode = static_cast<AnswerMode>(whole(*mode_, index, 2, "0 for sampled, 1 for contact or 2 for reference"));
@@ -177,23 +207,28 @@ void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesyste
     parts.push_back(std::move(append));
   };
   const auto put = [&](const auto& value) { appendBytes(rows, value); };
-  if (std::ranges::any_of(queries, [](const QuerySpec& query) { return query.turn.has_value(); })) {
-    throw std::runtime_error(file.string() + ": expected queries without turns, for which an array has no columns");
-  }
-  const bool steps = std::ranges::any_of(queries, [](const QuerySpec& query) { return query.motion.has_value(); });
-  if (steps && !std::ranges::all_of(queries, [](const QuerySpec& query) { return query.motion.has_value(); })) {
+  // What every query leaves at its default needs no column.
+  const auto some = [&](const auto& isGivenIn) { return std::ranges::any_of(queries, isGivenIn); };
+  const bool steps = some(takesStep);
+  if (steps && !std::ranges::all_of(queries, takesStep)) {
     throw std::runtime_error(file.string() + ": expected either motions or directions in all queries, got both");
   }
+  const bool moves = some([](const QuerySpec& query) { return query.motion.has_value(); });
   add("mesh", "'<u4'", [&](const QuerySpec& query) { put(query.mesh); });
   add("pose", "'<f8', (3, 4)", [&](const QuerySpec& query) { put(query.worldFromMesh.m); });
-  if (steps) {
-    add("motion", "'<f8', (3,)", [&](const QuerySpec& query) { put(*query.motion); });
-  } else {
+  if (moves) {
+    add("motion", "'<f8', (3,)", [&](const QuerySpec& query) { put(query.motion.value_or(std::array<double, 3>{})); });
+  }
+  if (some([](const QuerySpec& query) { return query.turn.has_value(); })) {
+    static constexpr Turn kStraight{.angle = std::numeric_limits<double>::quiet_NaN()};
+    add("turn_axis", "'<f8', (3,)", [&](const QuerySpec& query) { put(query.turn.value_or(kStraight).axis); });
+    add("turn_angle", "'<f8'", [&](const QuerySpec& query) { put(query.turn.value_or(kStraight).angle); });
+    add("turn_centre", "'<f8', (3,)", [&](const QuerySpec& query) { put(query.turn.value_or(kStraight).centre); });
+  }
+  if (!steps) {
     add("dir", "'<f8', (3,)", [&](const QuerySpec& query) { put(query.direction); });
     add("D", "'<f8'", [&](const QuerySpec& query) { put(query.distance); });
   }
-  // What every query leaves at its default needs no column.
-  const auto some = [&](const auto& isGivenIn) { return std::ranges::any_of(queries, isGivenIn); };
   if (some([](const QuerySpec& query) { return query.scene != 0; })) {
     add("scene", "'<u4'", [&](const QuerySpec& query) { put(query.scene); });
   }

@@ -1,6 +1,7 @@
 // Queries as a structured array in an .npy file, one row each (docs/query-file.md).
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -32,6 +33,9 @@ class BinaryQueries {
   const Column* column(const char* name, const char* kinds, const std::vector<uint64_t>& shape, bool required);
   uint64_t whole(const Column& column, uint64_t index, uint64_t most, const std::string& expected) const;
   double finite(const Column& column, uint64_t index, uint64_t part = 0) const;
+  std::array<double, 3> vector(const Column& column, uint64_t index, double most = INFINITY,
+                               const char* mostInWords = "") const;
+  void readTurn(QuerySpec& query, uint64_t index) const;
   void readMove(QuerySpec& query, uint64_t index) const;
   void readField(const QueryField& field, const Column& column, uint64_t index, QuerySpec& query) const;
   void requireKnownColumns() const;
@@ -43,8 +47,8 @@ class BinaryQueries {
   Columns columns_;
   std::vector<std::string> known_;
   const Column *mesh_, *pose_;
-  const Column *direction_ = nullptr, *distance_ = nullptr, *motion_ = nullptr, *scene_ = nullptr, *batch_ = nullptr,
-               *mode_ = nullptr;
+  const Column *direction_ = nullptr, *distance_ = nullptr, *motion_ = nullptr, *axis_ = nullptr, *angle_ = nullptr,
+               *centre_ = nullptr, *scene_ = nullptr, *batch_ = nullptr, *mode_ = nullptr;
   std::vector<const Column*> fields_;  ///< of queryFields()
 };
 

@@ -116,6 +116,9 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
     query.ifHas("motion", [&](const JsonValue& motion) {
       if (motion.size() != 3) motion.expected("3 numbers");
       spec.motion = motionFrom(motion, 0);
+      for (size_t k = 0; k < 3 && query.has("turn"); ++k) {
+        if (std::abs((*spec.motion)[k]) > 0x1p800) motion[k].expected("a number of at most 2^800 beside \"turn\"");
+      }
     });
     query.ifHas("turn", [&](const JsonValue& turn) { spec.turn = turnFrom(turn); });
   } else {

@@ -7,11 +7,14 @@
 
 #include "batch/query_file.h"
 #include "import/mesh_import.h"
+#include "radar/displacement.h"
 #include "workloads/query_fields.h"
 
 namespace radar::tools {
 
 namespace {
+
+constexpr double kFarthestTurn = 0x1p800;
 
 void requireFinite(const char* option, const std::vector<double>& values) {
   for (double value : values) {
@@ -205,24 +208,73 @@ void SweepOptions::addFieldsTo(Command& command) {
       .value("NODE,...");
 }
 
-Workload SweepOptions::load() const {
+void SweepOptions::addTurnTo(Command& command) {
+  command
+      .option("--turn", &turn,
+              "Turns the sensor during the motion, or without one, by the right-hand rule: an axis and radians")
+      .count(4)
+      .value("X Y Z ANGLE");
+  command
+      .option("--centre", &centre,
+              "Where the axis of --turn is at the start; it moves with the sensor. Else where --at puts the origin")
+      .count(3)
+      .value("X Y Z");
+}
+
+void SweepOptions::setTurn(QuerySpec& query) const {
+  requireFinite("--turn", turn);
+  requireFinite("--centre", centre);
+  Turn& its = query.turn.emplace(Turn{{turn[0], turn[1], turn[2]}, turn[3], {}});
+  if (its.axis == std::array<double, 3>{}) throw InputError("--turn", "", "expected an axis that is not zero");
+  if (std::abs(its.angle) > 0x1p16) {
+    throw InputError("--turn", "", "expected an angle of at most 2^16, got " + inShortest(its.angle));
+  }
+  const std::vector<double>& from = centre.empty() ? at : centre;
+  std::ranges::copy(from, its.centre.begin());
+  for (const double value : from) {
+    if (std::abs(value) > kFarthestTurn) {
+      throw InputError(centre.empty() ? "--at" : "--centre", "", "expected at most 2^800, got " + inShortest(value));
+    }
+  }
+  if (query.speed) throw InputError("--speed", "", "expected none beside --turn");
+  if (query.ignoreLeaving) throw InputError("--ignore-leaving", "", "expected none beside --turn");
+  if (query.distance == 0) {
+    query.direction = {};
+    return;
+  }
+  if (query.distance > kFarthestTurn) throw InputError("--distance", "", "expected at most 2^800 beside --turn");
+  QuerySpec straight = query;
+  straight.turn.reset();
+  query.motion = displacementOf(straight);
+  query.direction = {};
+  query.distance = 0;
+}
+
+void SweepOptions::setCourse(QuerySpec& query) const {
+  if (turn.empty() && !centre.empty())
+    throw InputError("--centre", "", "expected it with --turn, whose axis it places");
+  if (!turn.empty() && direction.empty() && !distance) return setTurn(query);
   if (direction.empty()) throw InputError("--direction", "", "expected three numbers, got none");
   if (!distance) throw InputError("--distance", "", "expected a number, got none");
   requireFinite("--direction", direction);
   requireFinite("--distance", {*distance});
-  requireFinite("--at", at);
-  requireFinite("--rotate", rotate);
-  requireScale("--scale", scale);
-  requireScale("--sensor-scale", sensorScale);
-  QuerySpec query = fields;
-  query.id = "sweep";
   std::copy(direction.begin(), direction.end(), query.direction.begin());
   if (query.direction == std::array<double, 3>{}) {
     throw InputError("--direction", "", "expected a vector that is not zero");
   }
   query.distance = *distance;
   if (query.distance < 0) throw InputError("--distance", "", "expected a number of 0 or more");
+  if (!turn.empty()) setTurn(query);
+}
 
+Workload SweepOptions::load() const {
+  requireFinite("--at", at);
+  requireFinite("--rotate", rotate);
+  requireScale("--scale", scale);
+  requireScale("--sensor-scale", sensorScale);
+  QuerySpec query = fields;
+  query.id = "sweep";
+  setCourse(query);
   std::vector<std::string> warnings;
   Workload workload;
   const Assembly nodes = nodesOf(scene, warnings, scale.value_or(1));

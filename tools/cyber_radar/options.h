@@ -34,18 +34,25 @@ struct EngineOptions {
 /// One sweep given on the command line: a scene file, a sensor file, and how the sensor moves.
 struct SweepOptions {
   std::string scene, sensor;
-  std::vector<double> direction, at, rotate;
+  std::vector<double> direction, at, rotate, turn, centre;
   std::optional<double> distance, scale, sensorScale;
   std::vector<std::string> exclude;
   QuerySpec fields;
 
-  /// All but the two files and what addFieldsTo() adds. Returns what was added.
+  /// All but the two files and what the next two add. Returns what was added.
   std::vector<NamedOption> addMotionTo(Command& command);
+  /// --turn and --centre; the direction may then be missing.
+  void addTurnTo(Command& command);
   /// Those of queryFields() that are options, and --exclude.
   void addFieldsTo(Command& command);
   /// Reads both files: each node of the scene's is an object of that number, the last mesh is the sensor's. Prints
   /// warnings to standard error. Throws InputError that names the option or file.
   Workload load() const;
+
+ private:
+  /// Sets direction and distance, or turn and motion.
+  void setCourse(QuerySpec& query) const;
+  void setTurn(QuerySpec& query) const;
 };
 
 /// --device, of a command that asks several.

@@ -14,6 +14,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep hall.glb robot.ply --direction 1 0 0 --distance 5
   cyber-radar sweep ring.obj peg.stl --at 0 0 -3 --rotate 0 1 0 15 --direction 0 0 1 --distance 8 --speed 0.5
+  cyber-radar sweep frame.stl door.stl --turn 0 0 1 1.57 --centre 0.9 0 0
   cyber-radar sweep gearbox.glb gearbox.glb#shaft --exclude shaft --direction 0 0 1 --distance 90 --hits all
   cyber-radar sweep hall.glb part.stl --sensor-scale 0.001 --direction 0 0 1 --distance 2
   cyber-radar sweep floor.stl crate.stl --direction 0 0 1 --distance 8 --ignore-leaving
@@ -24,7 +25,7 @@ constexpr const char* kExamples = R"(Examples:
 SCENE and SENSOR are OBJ, STL, PLY, OFF, 3MF or glTF 2 files, or what assimp reads besides, in one common unit after
 --scale and --sensor-scale; FILE#3 or FILE#NAME is one node of a file, in its own frame. The scene stands as it is, each of
 its nodes an object (cyber-radar info lists them); the sensor, one mesh, is turned (--rotate), put in its place (--at) and
-moved along --direction for --distance.)";
+moved along --direction for --distance. With --turn it turns meanwhile, or on the spot.)";
 
 struct Options {
   EngineOptions engine;
@@ -41,8 +42,7 @@ std::string introduction(const Workload& workload, const std::filesystem::path& 
   for (const Instance& object : objects) triangles += workload.meshes[object.mesh].triangleCount();
   return "scene:  " + scene.filename().string() + (objects.size() > 1 ? ", " + counted(objects.size(), "object") : "") +
          ", " + counted(triangles, "triangle") + "\nsensor: " + sensor.name + ", " +
-         counted(sensor.triangleCount(), "triangle") + "\nmoves " + inDigits(query.distance) + " along " +
-         inDigits(query.direction) + "\n";
+         counted(sensor.triangleCount(), "triangle") + "\n" + courseInWords(query);
 }
 
 // The exit status; says on standard error what it is for.
@@ -58,6 +58,8 @@ int sweep(const Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   Outputs outputs;
   if (!options.view.empty()) {
+    if (!options.sweep.turn.empty())
+      throw InputError("--view", "", "expected none beside --turn, which it does not show");
     outputs.add("--view", options.view);
     for (const std::string& mesh : {options.sweep.scene, options.sweep.sensor}) {
       outputs.requireNone(splitMeshName(mesh).file);
@@ -93,6 +95,7 @@ void addSweepCommand(Program& program) {
   command.option("SCENE", &options->sweep.scene, "Mesh file of what stands still").required();
   command.option("SENSOR", &options->sweep.sensor, "Mesh file of what moves").required();
   options->sweep.addMotionTo(command);
+  options->sweep.addTurnTo(command);
   options->sweep.addFieldsTo(command);
   options->engine.addTo(command);
   command.option("--view", &options->view, "Writes a page here that shows the answer in any browser")

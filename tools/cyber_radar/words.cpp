@@ -33,14 +33,28 @@ std::string contactInWords(const Workload& workload, const QuerySpec& query, con
   return text;
 }
 
+/// A time, as answers have it: how far it is, or of a step its fraction.
+std::string timeInWords(const Query& query, double time) {
+  return takesStep(query) ? inDigits(100 * time) + "% of the motion" : inDigits(time);
+}
+
+/// How certain a hit of mode contact is.
+std::string bracketInWords(const Query& query, const Result& result) {
+  if (result.tier == Tier::sampled) return "certainly no later; mode sampled does not say how much earlier";
+  if (takesStep(query) && result.lo < result.hi) {
+    return "no earlier; certainly at most " + inDigits(100 * (result.hi - result.lo)) + "% of the motion later";
+  }
+  return query.clearance > 0 ? "no earlier; certainly by " + inDigits(result.hi) : "exact, to rounding";
+}
+
 std::string listsInWords(const Workload& workload, const QuerySpec& query, const Listed& listed) {
   std::string text;
   for (size_t i = 1; i < listed.hits.size(); ++i) {
     const Result& hit = listed.hits[i];
     text += "  then    " + objectInWords(workload, query.scene, hit.object) +
             (hit.status == Status::overlap     ? " at the start\n"
-             : hit.status == Status::undecided ? ", perhaps, after " + inDigits(hit.lo) + "\n"
-                                               : " after " + inDigits(hit.t) + "\n");
+             : hit.status == Status::undecided ? ", perhaps, after " + timeInWords(query, hit.lo) + "\n"
+                                               : " after " + timeInWords(query, hit.t) + "\n");
   }
   for (const ObjectId object : listed.overlapping) {
     text += "  without " + objectInWords(workload, query.scene, object) +
@@ -51,16 +65,14 @@ std::string listsInWords(const Workload& workload, const QuerySpec& query, const
 
 std::string resultInWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
   const Result& result = answer.result;
-  const std::string distance = inDigits(query.distance);
+  const bool isStep = takesStep(query);
+  const std::string distance = inDigits(query.distance), during = isStep ? "during the motion" : "within " + distance;
   switch (result.status) {
     case Status::hit:
       return "hit: " + std::string(query.clearance > 0 ? "within " + inDigits(query.clearance) : "first contact") +
-             " after " + inDigits(result.t) + " of " + distance + " (" + inDigits(100 * result.fraction) +
-             "% of the way)\n  how     " +
-             (result.tier == Tier::sampled ? "certainly no later; mode sampled does not say how much earlier"
-              : query.clearance > 0        ? "no earlier; certainly by " + inDigits(result.hi)
-                                           : "exact, to rounding") +
-             "\n" + contactInWords(workload, query, result);
+             " after " + timeInWords(query, result.t) +
+             (isStep ? "" : " of " + distance + " (" + inDigits(100 * result.fraction) + "% of the way)") +
+             "\n  how     " + bracketInWords(query, result) + "\n" + contactInWords(workload, query, result);
     case Status::overlap:
       return "overlap: the surfaces " +
              (query.clearance > 0 ? "are within " + inDigits(query.clearance) + " of each other"
@@ -69,11 +81,15 @@ std::string resultInWords(const Workload& workload, const QuerySpec& query, cons
     case Status::clear:
       return "clear: certainly " +
              (query.clearance > 0 ? "nothing nearer than " + inDigits(query.clearance) : std::string("no contact")) +
-             " within " + distance + "\n";
+             " " + during + "\n";
     case Status::undecided:
       if (query.clearance > 0) {
         return "undecided: passes at a distance of " + inDigits(query.clearance) + ", to rounding, after " +
-               inDigits(result.lo) + "\n";
+               timeInWords(query, result.lo) + "\n";
+      }
+      if (isStep) {
+        return "undecided: certainly no contact for " + timeInWords(query, result.lo) +
+               "; none after that gets deeper than the tolerance\n";
       }
       return std::string("undecided: ") +
              (result.detected == Detected::no ? "no pixel saw anything in the way" : "no pixel found a contact") +
@@ -99,6 +115,15 @@ std::string inDigits(const std::array<double, 3>& vector) {
 
 std::string leastFreeDistance(const Scopes& scopes) {
   return std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL);
+}
+
+std::string courseInWords(const Query& query) {
+  if (!query.turn) return "moves " + inDigits(query.distance) + " along " + inDigits(query.direction) + "\n";
+  const Turn& turn = *query.turn;
+  const double degrees = turn.angle * (180 / std::acos(-1.0));
+  return (query.motion ? "moves by " + inDigits(*query.motion) + "\n" : "") + "turns by " + inDigits(turn.angle) +
+         " (" + inDigits(degrees) + " degrees) about " + inDigits(turn.axis) + " through " + inDigits(turn.centre) +
+         "\n";
 }
 
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {

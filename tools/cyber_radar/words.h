@@ -14,6 +14,9 @@ std::string inDigits(const std::array<double, 3>& vector);  ///< (x, y, z)
 /// min(L) in words.
 std::string leastFreeDistance(const Scopes& scopes);
 
+/// Where the sensor goes, a line or two.
+std::string courseInWords(const Query& query);
+
 /// What is hit, where and when, in a few lines; `workload` gives the names.
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer);
 

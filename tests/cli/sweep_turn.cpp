@@ -1,0 +1,87 @@
+// sweep with a sensor that turns.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "support/catch.h"
+
+using radar::test::checkRefused;
+using radar::test::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+namespace {
+
+/// A rod of length 10 along x, and a post of width 1, both about the origin.
+void writeGate(const ScratchFolder& folder) {
+  folder.write("rod.obj", "v -5 -.5 0\nv 5 -.5 0\nv 5 .5 0\nv -5 .5 0\nf 1 2 3\nf 1 3 4\n");
+  folder.write("post.obj",
+               "v -.5 -.5 -1\nv -.5 .5 -1\nv .5 0 -1\nv -.5 -.5 1\nv -.5 .5 1\nv .5 0 1\n"
+               "f 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\nf 3 1 4\nf 3 4 6\n");
+}
+
+// The rod lies right of the centre; after a quarter it stands with its left side at the post's edge, at x = 0.5.
+const std::string kQuarter = "sweep post.obj rod.obj --mode reference --at 6 -4 0 --centre 1 -4 0 --turn 0 0 2 3 ";
+
+}  // namespace
+
+TEST_CASE("sweep turns its sensor, and says when in the motion it meets what") {
+  const ScratchFolder folder;
+  writeGate(folder);
+  const Run run = runProgram(folder, kQuarter + "--json");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  const auto answer = nlohmann::json::parse(run.out);
+  CHECK(answer["status"] == "hit");
+  CHECK(std::abs(answer["fraction"].get<double>() * 3 - 1.57079632679) < 2e-6);
+  const Run words = runProgram(folder, kQuarter);
+  CHECK_THAT(words.out, Contains("\nturns by 3 (171.887 degrees) about (0, 0, 2) through (1, -4, 0)\n") &&
+                            Contains("hit: first contact after 52.3") && Contains("% of the motion\n") &&
+                            Contains("no earlier; certainly at most "));
+  CHECK_THAT(runProgram(folder, kQuarter + "--hits all --expect hit").out, Contains("of object 0 (post.obj)"));
+  const Run free = runProgram(folder,
+                              "sweep post.obj rod.obj --mode reference --at 6 -4 0 --turn 0 0 1 1.5 "
+                              "--direction 0 0 1 --distance 2 --expect clear");
+  CHECK(free.status == 0);
+  CHECK_THAT(free.out,
+             Contains("moves by (0, 0, 2)\nturns by 1.5 (85.9437 degrees) about (0, 0, 1) through (6, -4, 0)\n") &&
+                 Contains("clear: certainly no contact during the motion"));
+}
+
+TEST_CASE("a sweep that turns has the answer of the same query in a file") {
+  const ScratchFolder folder;
+  writeGate(folder);
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["post.obj", "rod.obj"],
+    "scenes": [{"instances": [[0]]}], "queries": [{"id": "sweep", "scene": 0, "clearance": 0.25, "motion": [0, 0, 0.5],
+    "sensor": [1, 1,0,0,6, 0,1,0,-4, 0,0,1,0], "turn": {"axis": [0.5, 0, 2], "angle": 3, "centre": [6, -4, 0]}}]})");
+  const Run found = runProgram(folder, "query q.json --mode reference");
+  const Run run = runProgram(folder,
+                             "sweep post.obj rod.obj --mode reference --at 6 -4 0 --turn 0.5 0 2 3 "
+                             "--direction 0 0 3 --distance 0.5 --clearance 0.25 --json");
+  CHECK((run.status == 0 && found.status == 0));
+  CHECK_THAT(run.out, Contains("fraction_lo"));
+  CHECK(run.out == found.out);
+}
+
+TEST_CASE("sweep refuses what is no turn, and what does not go with one, by the option's name") {
+  const ScratchFolder folder;
+  writeGate(folder);
+  for (const auto& [options, words] :
+       {std::pair{"--turn 0 0 0 1", "--turn: expected an axis that is not zero"},
+        std::pair{"--turn 0 0 1 7e4", "--turn: expected an angle of at most 2^16, got 7"},
+        std::pair{"--turn 0 nan 1 1", "--turn: expected finite numbers, got nan"}, std::pair{"--turn 0 0 1", "--turn"},
+        std::pair{"--turn 0 0 1 1 --centre 0 0", "--centre"},
+        std::pair{"--turn 0 0 1 1 --centre 0 1e300 0", "--centre: expected at most 2^800, got 1e+300"},
+        std::pair{"--turn 0 0 1 1 --at 0 1e300 0", "--at: expected at most 2^800"},
+        std::pair{"--centre 0 0 0 --direction 0 0 1 --distance 1", "--centre: expected it with --turn"},
+        std::pair{"--turn 0 0 1 1 --distance 1", "--direction: expected three numbers, got none"},
+        std::pair{"--turn 0 0 1 1 --direction 0 0 1", "--distance: expected a number, got none"},
+        std::pair{"--turn 0 0 1 1 --direction 0 0 1 --distance 1e300", "--distance: expected at most 2^800"},
+        std::pair{"--turn 0 0 1 1 --speed 2", "--speed: expected none beside --turn"},
+        std::pair{"--turn 0 0 1 1 --ignore-leaving", "--ignore-leaving: expected none beside --turn"},
+        std::pair{"--turn 0 0 1 1 --mode sampled", "--mode: expected contact or reference, as \"turn\""}}) {
+    checkRefused(folder, std::string("sweep post.obj rod.obj ") + options, words);
+  }
+  checkRefused(folder, "scopes post.obj rod.obj --turn 0 0 1 1 --out p", "--turn");
+}

@@ -2,10 +2,12 @@
 #include <sstream>
 #include <vector>
 
+#include "cli/page_data.h"
 #include "cli/program.h"
 #include "support/catch.h"
 
 using radar::test::Contains;
+using radar::test::pageData;
 using radar::test::Run;
 using radar::test::runLab;
 using radar::test::runProgram;
@@ -286,7 +288,7 @@ TEST_CASE("query answers steps in which objects move and meshes are deformed") {
   CHECK((lines[3]["t"] == 6 && lines[3]["fraction"] == 0.5));
 }
 
-TEST_CASE("a query that turns is answered with a bracket of the step, and refused where nothing can be drawn of it") {
+TEST_CASE("a query that turns is answered with a bracket of the step, shown on a page, and refused by scopes") {
   const ScratchFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
   // The triangle opens like a lid, up to another one at the height of half its length.
@@ -306,9 +308,13 @@ TEST_CASE("a query that turns is answered with a bracket of the step, and refuse
   CHECK(double(lines[0]["fraction_hi"]) - double(lines[0]["fraction_lo"]) < 1e-6);
   CHECK((lines[1]["status"] == "clear"));
   CHECK(runProgram(folder, "query q.json --check").status == 0);
-  for (const char* command : {"view q.json a.jsonl --out v.html", "scopes q.json --query lid --out s"}) {
-    const Run refused = runProgram(folder, command);
-    CHECK(refused.status == 2);
-    CHECK_THAT(refused.err, Contains("expected ") && Contains("straight motion") && Contains("got a turn"));
-  }
+  REQUIRE(runProgram(folder, "view q.json a.jsonl --out v.html --gltf v.glb").status == 0);
+  const auto queries = pageData(folder.read("v.html"))["queries"];
+  CHECK(queries["turns"]["1"] == nlohmann::json::parse(R"({"axis": [1, 0, 0], "angle": -1, "centre": [0, 0, 0]})"));
+  CHECK(queries["turns"].size() == 2);
+  CHECK(queries["step"]["u1"] == "AQE=");  // 1, 1
+  CHECK_THAT(folder.read("v.glb"), Contains("\"rotation\""));
+  const Run refused = runProgram(folder, "scopes q.json --query lid --out s");
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.err, Contains("expected a straight motion, along which scopes look, got a turn"));
 }

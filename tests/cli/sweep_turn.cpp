@@ -2,11 +2,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/page_data.h"
 #include "cli/program.h"
 #include "support/catch.h"
 
 using radar::test::checkRefused;
 using radar::test::Contains;
+using radar::test::pageData;
 using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;
@@ -40,6 +42,8 @@ TEST_CASE("sweep turns its sensor, and says when in the motion it meets what") {
                             Contains("hit: first contact after 52.3") && Contains("% of the motion\n") &&
                             Contains("no earlier; certainly at most "));
   CHECK_THAT(runProgram(folder, kQuarter + "--hits all --expect hit").out, Contains("of object 0 (post.obj)"));
+  REQUIRE(runProgram(folder, kQuarter + "--view v.html").status == 0);
+  CHECK(pageData(folder.read("v.html"))["queries"]["turns"]["0"]["angle"] == 3);
   const Run free = runProgram(folder,
                               "sweep post.obj rod.obj --mode reference --at 6 -4 0 --turn 0 0 1 1.5 "
                               "--direction 0 0 1 --distance 2 --expect clear");

@@ -48,6 +48,19 @@ def test_a_page_has_the_casts_and_the_scene(tmp_path):
     assert numbers(part["answers"]["t"]).tolist() == [4.0, 1.0]
 
 
+def test_a_page_shows_casts_that_turn(tmp_path):
+    scene, cube = row()
+    centres = np.array([[0, -5, 0], [np.nan, 0, 0], [0, 2, 0]], float)
+    casts = scene.cast(cube, None, [[0, 0, 0], [0, 0, 1], [0, 0, 2]], turns=([0, 0, 1], [-1, 2, 3], centres))
+    shown = page_data(casts.show(tmp_path / "page.html"))["queries"]
+    assert shown["turns"]["0"] == {"axis": [0, 0, 1], "angle": -1, "centre": [0, -5, 0]}
+    assert shown["turns"]["2"] == {"axis": [0, 0, 1], "angle": 3, "centre": [0, 2, 0]}
+    assert numbers(shown["way"]).reshape(3, 3).tolist() == [[0, 0, 0], [0, 0, 1], [0, 0, 2]]
+    assert numbers(shown["step"]).tolist() == [1, 1, 1] and numbers(shown["whole"]).tolist() == [1, 1, 1]
+    part = page_data(casts[2:].show(tmp_path / "part.html"))["queries"]
+    assert part["turns"] == {"0": shown["turns"]["2"]}
+
+
 def test_a_page_knows_what_was_asked_and_left_out(tmp_path):
     scene, cube = row()
     starts = at([[0, 0, 0], [5.5, 0.5, 0.5]])

@@ -124,6 +124,59 @@ TEST_CASE("a glTF file has every object where it is, and every sensor on its way
   CHECK(lengthOf(Vec3{moved.mValue.x, moved.mValue.y, moved.mValue.z} - Vec3{1, 2, 3}) < 1e-6);
 }
 
+TEST_CASE("a sensor that turns in a glTF file is at each key where the turn takes it") {
+  Workload workload = makeWorkload(Soups{.objects = 1, .sensors = 3});
+  const std::array<Turn, 3> turns{Turn{{0, 0, -2}, 7, {3, -1, 2}}, Turn{{1e-310, 0, 0}, -0.5, {}},
+                                  Turn{{}, 0, {1, 2, 3}}};
+  for (size_t i = 0; i < 3; ++i) {
+    QuerySpec& query = workload.queries[i];
+    query.direction = {};
+    query.distance = 0;
+    query.turn = turns[i];
+    if (i != 1) query.motion = Vec3{1, 2, -3};
+  }
+  std::vector<Result> answers(3, Result(Status::clear));
+  answers[0] = Result(Status::hit);
+  answers[0].t = 0.75;
+  const Loaded loaded(gltfOf(workload, answers, {}).bytes);
+  const aiAnimation& animation = *loaded.scene->mAnimations[0];
+  CHECK(animation.mNumChannels == 3);
+  for (unsigned c = 0; c < animation.mNumChannels; ++c) {
+    const aiNodeAnim& moves = *animation.mChannels[c];
+    const auto i = static_cast<size_t>(
+        std::ranges::find_if(workload.queries,
+                             [&](const QuerySpec& query) { return "sensor " + query.id == moves.mNodeName.C_Str(); }) -
+        workload.queries.begin());
+    const QuerySpec& query = workload.queries[i];
+    const double share = i == 0 ? 0.75 : 1, seconds = moves.mPositionKeys[1].mTime / animation.mTicksPerSecond;
+    CHECK(seconds == Approx(3 * share));
+    checkPlaced(loaded.corners(query.id), workload.meshes[query.mesh], query.worldFromMesh);
+    REQUIRE(moves.mNumRotationKeys >= 2);
+    CHECK(moves.mRotationKeys[moves.mNumRotationKeys - 1].mTime == moves.mPositionKeys[1].mTime);
+    const Vec3 arm{2, 1, -1};  // from the centre
+    for (unsigned k = 0; k < moves.mNumRotationKeys; ++k) {
+      const aiQuatKey& key = moves.mRotationKeys[k];
+      const double s = share * key.mTime / moves.mPositionKeys[1].mTime, by = s * turns[i].angle;
+      if (k > 0) CHECK(std::abs(turns[i].angle) * share / (moves.mNumRotationKeys - 1) < 1.1);
+      const aiVector3D found = key.mValue.Rotate({float(arm[0]), float(arm[1]), float(arm[2])});
+      Vec3 expected = arm;
+      if (i == 0) {  // by -z
+        expected = {std::cos(by) * arm[0] + std::sin(by) * arm[1], std::cos(by) * arm[1] - std::sin(by) * arm[0],
+                    arm[2]};
+      } else if (i == 1) {
+        expected = {arm[0], std::cos(by) * arm[1] - std::sin(by) * arm[2],
+                    std::cos(by) * arm[2] + std::sin(by) * arm[1]};
+      }
+      CHECK(lengthOf(Vec3{found.x, found.y, found.z} - expected) < 1e-5);
+    }
+    for (unsigned k = 0; k < 2; ++k) {
+      const aiVector3D& place = moves.mPositionKeys[k].mValue;
+      const Vec3 expected = turns[i].centre + (k * share) * query.motion.value_or(Vec3{});
+      CHECK(lengthOf(Vec3{place.x, place.y, place.z} - expected) < 1e-5);
+    }
+  }
+}
+
 TEST_CASE("meshes are stored once, whatever their statuses, but deformed or sheared ones") {
   const Workload workload = makeWorkload(Figure7{.teapots = 6, .boxes = 50, .steps = 4});
   Scene scene;

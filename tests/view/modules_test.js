@@ -7,7 +7,8 @@ import { Hands } from "../../tools/view/hands.js";
 import { Look } from "../../tools/view/look.js";
 import { Renderer } from "../../tools/view/renderer.js";
 import { COLUMNS, Listing } from "../../tools/view/table.js";
-import { Camera } from "../../tools/view/vectors.js";
+import { Stage } from "../../tools/view/stage.js";
+import { Camera, lengthOf, minus, plus, unit } from "../../tools/view/vectors.js";
 import { contactInWords, inWords } from "../../tools/view/words.js";
 
 const NONE = 0xffffffff, TYPES = { u1: Uint8Array, u4: Uint32Array, f4: Float32Array, f8: Float64Array };
@@ -29,7 +30,7 @@ const STATUSES = ["hit", "clear", "overlap", "undecided", "invalid"];
 
 /**
  * What page.cpp writes of a scene of cubes of side 2 at x = 0, 10, 20, and sensors like them, which move 10 along x.
- * `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left, ignored, id, at, asked, step}.
+ * `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left, ignored, id, at, asked, step, turn}.
  */
 function dataOf(rows) {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)));
@@ -43,7 +44,7 @@ function dataOf(rows) {
     ...poses(rows.map(({ at = [-5, 0, 0] }) => at)), count: rows.length, id: rows.map(({ id }, i) => id ?? `${i}`),
     scene: array("u4", rows.map(() => 0)), way: array("f8", rows.flatMap(() => [10, 0, 0])),
     whole: array("f8", rows.map(({ step }) => (step ? 1 : 10))), step: array("u1", rows.map(({ step }) => (step ? 1 : 0))),
-    asked: by("asked"), ignored: by("ignored"),
+    asked: by("asked"), ignored: by("ignored"), turns: by("turn"),
   };
   return new Data(JSON.stringify({
     title: "", notes: [], tour: [], none: NONE, statuses: STATUSES, scenes: [scene], queries, answers: answersOf(rows),
@@ -68,6 +69,45 @@ test("an answer says how far its sensor goes, and when it touches something", ()
   assert.equal(data.latest, 3);
   assert.deepEqual([data.answers[0].hasPoint, data.answers[1].hasPoint], [true, false]);
   assert.deepEqual([data.answers[0].point, data.answers[0].normal], [HIT.point, HIT.normal]);
+});
+
+test("a sensor that turns goes round its centre, which goes straight", () => {
+  const turn = { axis: [0, 0, 1e-310], angle: Math.PI, centre: [-5, 4, 0] };
+  const hit = { ...HIT, t: 0.5, lo: 0.5, hi: 0.75, step: true };
+  const data = dataOf([{ ...hit, turn }, { ...CLEAR, step: true, turn }, { ...HIT, step: true, t: 0.5 },
+    { ...CLEAR, step: true, turn: { axis: [0, 0, 0], angle: 0, centre: [0, 0, 0] } }]);
+  const rounded = (v) => v.map((x) => Number(x.toFixed(9)) + 0);
+  assert.deepEqual([0, 0.5, 1].map((share) => rounded(data.placeAt(0, share))), [[-5, 0, 0], [4, 4, 0], [5, 8, 0]]);
+  assert.deepEqual(data.placeAt(2, 0.5), [0, 0, 0]);
+  assert.deepEqual(data.placeAt(3, 0.5), [0, 0, 0]);
+  // A corner of the cube, by the pose that is drawn.
+  for (const share of [0, 0.3, 0.5]) {
+    const { placed, i, moved } = data.sensorAt(0, share), c = Math.cos(share * Math.PI), s = Math.sin(share * Math.PI);
+    const place = plus(placed.toWorld(i, [1, -1, 1]), moved), arm = [1, -5, 1];
+    const expected = [-5 + 10 * share + c * arm[0] - s * arm[1], 4 + s * arm[0] + c * arm[1], 1];
+    assert.ok(lengthOf(minus(place, expected)) < 1e-6, `${place}`);
+  }
+  assert.equal(data.sensorAt(0, 0.5), data.sensorAt(0, 0.5));
+  assert.deepEqual([data.sensorAt(2, 0.5).placed, data.sensorAt(2, 0.5).moved], [data.sensors, [5, 0, 0]]);
+  const path = data.path(0, 0, 0.5);
+  assert.equal(path.length, 9);
+  assert.deepEqual([rounded(path[0]), rounded(path.at(-1))], [[-5, 0, 0], [4, 4, 0]]);
+  assert.equal(data.path(2, 0, 1).length, 2);
+  assert.ok(unit(data.heading(0, 0.5))[1] > 0.7 && data.heading(2, 0.5)[1] === 0);
+  // The whole way is looked at, whose middle point is the farthest.
+  assert.ok(data.extent(0).bounds.hi[1] >= 5);
+  assert.deepEqual(data.answers.map(({ share }) => share), [0.5, 1, 0.5, 1]);
+  assert.equal(inWords(data.answers[0])[1], "It turns by 180° about (0, 0, 1e-310) through (-5, 4, 0).");
+  assert.equal(inWords(data.answers[0])[0], "Free for 0.5 of the step, then it touches object 0 (cube).");
+});
+
+test("a turn's path is drawn as lines, dashed by leaving out every other", () => {
+  const lines = [], stage = { line: (...line) => lines.push(line), path: Stage.prototype.path };
+  stage.path([0, 1, 2, 3, 4], "red", 2);
+  stage.path([0, 1, 2, 3, 4], "red", 2, 6);
+  stage.path([0, 1], "red", 2, 6);
+  assert.deepEqual(lines, [[0, 1, "red", 2, 0], [1, 2, "red", 2, 0], [2, 3, "red", 2, 0], [3, 4, "red", 2, 0],
+    [0, 1, "red", 2, 0], [2, 3, "red", 2, 0], [0, 1, "red", 2, 6]]);
 });
 
 test("another mode's answer names what is touched where the page's own names nothing", () => {

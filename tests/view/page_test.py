@@ -381,6 +381,51 @@ def test_objects_move_and_deform_and_steps_have_scenes_of_their_own(browser, tmp
     assert view.errors() == []
 
 
+def test_a_sensor_that_turns_is_drawn_where_its_turn_takes_it(browser, tmp_path):
+    # A cube on an arm of 10 about (0, -10), from the right to below the row's first cube, and on a screw.
+    queries = [
+        {
+            "id": "swings",
+            "sensor": at(0, 10, -10, 0),
+            "turn": {"axis": [0, 0, 5], "angle": 3, "centre": [0, -10, 0]},
+        },
+        {
+            "id": "screws",
+            "sensor": at(0, 40, 60, 0),
+            "motion": [0, 0, 20],
+            "turn": {"axis": [0, 0, 1], "angle": 6.28318530718, "centre": [40, 50, 0]},
+        },
+    ]
+    view = View(browser, make_page(tmp_path, queries))
+    words = words_of(view, 0)
+    assert "then it touches object 0 (cube.obj)." in words and "It turns by 171.9° about (0, 0, 5) through (0, -10, 0)." in words
+    share = view.run("return view.data.answers[0].share")
+    angle = 3 * share
+    assert 1 < angle < math.pi / 2
+    view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.setAlone(true); view.change()")
+
+    def middle_of_top(angle):
+        return 10 * math.cos(angle), -10 + 10 * math.sin(angle), 1
+
+    def colour(place):
+        view.run("view.stage.begin(4e6)")
+        return view.colour_at(place)
+
+    assert is_like(colour(middle_of_top(angle)), "hit")
+    for time in (0.25, 0.5):
+        view.run("view.seek(arguments[0])", time)
+        assert is_like(colour(middle_of_top(time * angle)), "hit"), time
+        assert not is_like(colour(middle_of_top(0.85 * angle)), "hit")
+    # What plays: the same turn at all times, and at half its way the screw is on the other side, half as high.
+    view.choose(1)
+    view.run("view.seek(0.5)")
+    place = view.run("return view.data.placeAt(1, 0.5)")
+    assert [round(x, 6) for x in place] == [40, 40, 10]
+    view.run("view.camera.target = [40, 40, 10]; view.camera.distance = 40; view.change()")
+    assert max(colour((40, 40, 11))) > 1.2 * min(colour((40, 40, 11)))
+    assert view.errors() == []
+
+
 def words_of(view, query):
     view.choose(query)
     return view.browser.find_element(By.ID, "chosen").text

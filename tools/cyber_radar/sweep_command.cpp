@@ -58,8 +58,6 @@ int sweep(const Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   Outputs outputs;
   if (!options.view.empty()) {
-    if (!options.sweep.turn.empty())
-      throw InputError("--view", "", "expected none beside --turn, which it does not show");
     outputs.add("--view", options.view);
     for (const std::string& mesh : {options.sweep.scene, options.sweep.sensor}) {
       outputs.requireNone(splitMeshName(mesh).file);

@@ -42,11 +42,6 @@ int view(const Options& options) {
   std::vector<std::string> warnings;
   const Workload workload = QueryFile(options.file, warnings, outputs).all();
   printWarnings(warnings);
-  for (const QuerySpec& query : workload.queries) {
-    if (!query.turn) continue;
-    throw InputError(options.file, "query \"" + query.id + "\"",
-                     "expected straight motions, which pictures show, got a turn");
-  }
   std::vector<Answer> answers;
   std::optional<Answering> answering;
   const Device* device = nullptr;

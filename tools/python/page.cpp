@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "view/page.h"
 #include "workloads/answer_fields.h"
@@ -67,6 +68,14 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
     query.worldFromMesh = scene.based().placed(query.mesh, transformFrom(poses + 16 * i));
     std::copy_n(directions + 3 * i, 3, query.direction.begin());
     query.distance = distances[i];
+    if (arrays.contains("turns: axes")) {
+      query.motion = std::exchange(query.direction, {});
+      query.distance = 0;
+      Turn& turn = query.turn.emplace();
+      std::copy_n(numbers<double>(arrays, "turns: axes", 3 * shown) + 3 * i, 3, turn.axis.begin());
+      turn.angle = numbers<double>(arrays, "turns: angles", shown)[i];
+      std::copy_n(numbers<double>(arrays, "turns: centres", 3 * shown) + 3 * i, 3, turn.centre.begin());
+    }
     for (const tools::QueryField& field : tools::queryFields()) {
       if (!field.cast) continue;
       const double value = numbers<double>(arrays, field.name, shown)[i];

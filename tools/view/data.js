@@ -2,7 +2,7 @@
 
 import { Bounds, nearTogether } from "./extent.js";
 import { Mesh, Placed } from "./meshes.js";
-import { lengthOf, plus, times } from "./vectors.js";
+import { between, cross, lengthOf, minus, plus, times, unit } from "./vectors.js";
 
 /**
  * What page.cpp writes, of n things n numbers, or as many times as many as stated. By query: only of those that have some.
@@ -10,7 +10,7 @@ import { lengthOf, plus, times } from "./vectors.js";
  * @typedef {Poses & {id: string, base: ?number, number: Uint32Array, names: Record<number, string>, moving: Uint32Array,
  *   ways: Float64Array, deforms: {mesh: number, positions: Float32Array}[]}} SceneRow  ways: 3
  * @typedef {Poses & {count: number, id: string[], scene: Uint32Array, way: Float64Array, whole: Float64Array,
- *   step: Uint8Array, ignored: Record<number, number[]>,
+ *   step: Uint8Array, turns: Record<number, {axis: number[], angle: number, centre: number[]}>, ignored: Record<number, number[]>,
  *   asked: Record<number, Record<string, number | string | boolean>>}} Queries  way: 3; asked: options given
  * @typedef {{status: Uint8Array, t: Float64Array, lo: Float64Array, hi: Float64Array, object: Uint32Array,
  *   tri_a: Uint32Array, tri_b: Uint32Array, point: Float64Array, normal: Float64Array, gap: Float64Array}} Answers
@@ -43,6 +43,13 @@ function joined(first, second) {
   all.set(first);
   all.set(second, first.length);
   return all;
+}
+
+/** A vector after a part of a turn, by O. Rodrigues. */
+function turned({ axis, angle }, vector, share) {
+  const by = share * angle, longest = Math.max(...axis.map(Math.abs)) || 1, along = unit(axis.map((x) => x / longest));
+  const across = cross(along, vector), inwards = cross(along, across);
+  return plus(vector, plus(times(Math.sin(by), across), times(2 * Math.sin(by / 2) ** 2, inwards)));
 }
 
 /** An answer to a query, or a contact that it lists. Ids are Data.none, numbers NaN, where there is none. */
@@ -98,7 +105,7 @@ export class Answer {
     switch (this.status) {
       case "hit": return data.fractionOf(query, this.t);
       case "undecided": return data.fractionOf(query, this.lo);
-      case "clear": return Math.min(1, data.reach(data.queries.scene[query]) / (lengthOf(data.way(query)) || 1));
+      case "clear": return data.shareInReach(query);
     }
     return 0;
   }
@@ -142,6 +149,11 @@ export class Data {
     this.shown = new Map();
     this.sensors = new Placed((i) => this.scene(this.queries.scene[i]).meshes, this.queries);
     this.answers = Array.from({ length: this.queries.count }, (_, query) => new Answer(this, query, written.answers, query));
+    /**
+     * Of each query the last that sensorAt() made.
+     * @type {Map<number, {share: number, placed: Placed, i: number, moved: number[]}>}
+     */
+    this.turnedSensors = new Map();
     /** @type {?number[]} */
     this.own = null;
     /** The latest of their times. */
@@ -176,15 +188,14 @@ export class Data {
     return (scene.extent ??= this.extentOf(number, scene.objects));
   }
   extentOf(number, objects) {
-    const things = [], add = (placed, i, way, isSensor) => {
-      const place = plus(placed.centreOf(i), times(0.5, way));
-      things.push({ place, radius: placed.radius[i] + 0.5 * lengthOf(way), isSensor });
-    };
-    for (let i = 0; i < objects.count; ++i) add(objects, i, [0, 0, 0], false);
+    const things = [];
+    for (let i = 0; i < objects.count; ++i) things.push({ place: objects.centreOf(i), radius: objects.radius[i], isSensor: false });
     for (const answer of this.answers) {
-      if (this.queries.scene[answer.query] !== number) continue;
-      const share = answer.status === "clear" ? 0 : answer.share;
-      add(this.sensors, answer.query, share > 0 ? times(share, this.way(answer.query)) : [0, 0, 0], true);
+      const { query, status } = answer;
+      if (this.queries.scene[query] !== number) continue;
+      const path = this.path(query, 0, status === "clear" ? 0 : answer.share), place = between(path[0], path.at(-1), 0.5);
+      const reach = path.reduce((most, point) => Math.max(most, lengthOf(minus(point, place))), 0);
+      things.push({ place, radius: this.sensors.radius[query] + reach, isSensor: true });
     }
     const { near, far } = nearTogether(things), bounds = new Bounds(), sensors = far.filter(({ isSensor }) => isSensor).length;
     for (const { place, radius } of near) bounds.add(place, radius);
@@ -223,5 +234,49 @@ export class Data {
   }
   way(query) {
     return [...this.queries.way.subarray(3 * query, 3 * query + 3)];
+  }
+  /** The part of a way that leads no farther than out of the scene. */
+  shareInReach(query) {
+    const length = lengthOf(this.way(query)), reach = this.reach(this.queries.scene[query]);
+    return length > reach ? reach / length : 1;
+  }
+
+  // Where a query's sensor is after a part of its way, during which it may turn
+
+  /** Where something of it is that starts at a place. */
+  moved(query, place, share) {
+    const way = times(share, this.way(query)), turn = this.queries.turns[query];
+    return plus(turn ? plus(turn.centre, turned(turn, minus(place, turn.centre), share)) : place, way);
+  }
+  placeAt(query, share) {
+    return this.moved(query, this.sensors.centreOf(query), share);
+  }
+  /** Points of its way from a part to another, joined by lines. */
+  path(query, from, to) {
+    const turn = this.queries.turns[query];
+    const parts = turn ? Math.min(Math.max(2, Math.ceil(5 * Math.abs(turn.angle * (to - from)))), 400) : 1;
+    return Array.from({ length: parts + 1 }, (_, i) => this.placeAt(query, from + (i / parts) * (to - from)));
+  }
+  /** Where it goes from there. */
+  heading(query, share) {
+    const h = 1e-4;
+    return this.queries.turns[query] ? minus(this.placeAt(query, share + h), this.placeAt(query, share - h)) : this.way(query);
+  }
+  /** What is placed, its number there, and how far it has moved from there. */
+  sensorAt(query, share) {
+    const { sensors } = this, turn = this.queries.turns[query];
+    if (!turn || share === 0) return { placed: sensors, i: query, moved: times(share, this.way(query)) };
+    const last = this.turnedSensors.get(query);
+    if (last?.share === share) return last;
+    const linear = new Float32Array(9), mesh = sensors.mesh.subarray(query, query + 1);
+    for (let column = 0; column < 3; ++column) {
+      const axis = [0, 1, 2].map((k) => sensors.linear[9 * query + 3 * k + column]);
+      turned(turn, axis, share).forEach((value, k) => (linear[3 * k + column] = value));
+    }
+    const at = new Float64Array(this.moved(query, sensors.at.subarray(3 * query, 3 * query + 3), share));
+    const placed = new Placed(() => sensors.meshesOf(query), { mesh, linear, at });
+    const found = { share, placed, i: 0, moved: [0, 0, 0] };
+    this.turnedSensors.set(query, found);
+    return found;
   }
 }

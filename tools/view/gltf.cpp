@@ -38,9 +38,22 @@ bool isSheared(const Transform& pose) {
 double shareOf(const Query& query, const Result& answer) {
   if (answer.status == Status::clear) return 1;
   if (query.anyHit && answer.status == Status::hit) return 0;
-  const double whole = query.motion ? 1 : query.distance;
+  const double whole = takesStep(query) ? 1 : query.distance;
   const double time = answer.status == Status::hit ? answer.t : answer.status == Status::undecided ? answer.lo : 0;
   return time > 0 && whole > 0 ? std::min(time / whole, 1.0) : 0;
+}
+
+/// Seconds; never 0, since one key alone would be no motion.
+float arrivalOf(double share) {
+  return static_cast<float>(std::max(kSeconds * share, 1e-3));
+}
+
+/// At length 1, however short or long; a zero stays.
+Vec3 unitOf(Vec3 v) {
+  const double most = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  if (most == 0) return v;
+  for (double& value : v) value /= most;
+  return (1 / lengthOf(v)) * v;
 }
 
 class Writer {
@@ -188,28 +201,56 @@ class Writer {
     return addNode(std::move(node));
   }
 
-  /// A node around another, which moves in the time of a way to `share` of it.
-  int addMoving(const std::string& name, int child, const Vec3& way, double share, tinygltf::Animation& animation) {
-    tinygltf::Node node;
-    node.name = name;
-    node.children = {child};
-    node.translation = {0, 0, 0};
-    const int number = addNode(std::move(node));
-    // One key alone would be no motion.
-    const double arrival = std::max(kSeconds * share, 1e-3);
-    const Vec3 end = share * way;
-    std::vector<float> times{0, static_cast<float>(arrival)}, places(3);
-    for (const double value : end) places.push_back(static_cast<float>(value));
+  /// Lets a node go through values, a vector or quaternion at each of the times.
+  void animate(int node, const char* what, const std::vector<float>& times, const std::vector<float>& values,
+               tinygltf::Animation& animation) {
+    const auto width = static_cast<int>(values.size() / times.size());
     tinygltf::AnimationSampler sampler;
     sampler.input = addAccessor(times, TINYGLTF_TYPE_SCALAR, 1, 0);
-    sampler.output = addAccessor(places, TINYGLTF_TYPE_VEC3, 3, 0);
+    sampler.output = addAccessor(values, width == 3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_VEC4, width, 0);
     sampler.interpolation = "LINEAR";
     tinygltf::AnimationChannel channel;
     channel.sampler = static_cast<int>(animation.samplers.size());
-    channel.target_node = number;
-    channel.target_path = "translation";
+    channel.target_node = node;
+    channel.target_path = what;
     animation.samplers.push_back(std::move(sampler));
     animation.channels.push_back(std::move(channel));
+  }
+
+  /// A node around another, which moves in the time of a way to `share` of it; its origin is at `from` at the start.
+  int addMoving(const std::string& name, int child, const Vec3& way, double share, tinygltf::Animation& animation,
+                const Vec3& from = {}) {
+    tinygltf::Node node;
+    node.name = name;
+    node.children = {child};
+    node.translation = {from[0], from[1], from[2]};
+    const int number = addNode(std::move(node));
+    std::vector<float> places;
+    for (const Vec3& place : {from, from + share * way}) {
+      for (const double value : place) places.push_back(static_cast<float>(value));
+    }
+    animate(number, "translation", {0, arrivalOf(share)}, places, animation);
+    return number;
+  }
+
+  /// The same, turning.
+  int addTurning(const std::string& name, int child, const Turn& turn, const Vec3& way, double share,
+                 tinygltf::Animation& animation) {
+    tinygltf::Node arm;
+    arm.children = {child};
+    arm.translation = {-turn.centre[0], -turn.centre[1], -turn.centre[2]};
+    const int number = addMoving(name, addNode(std::move(arm)), way, share, animation, turn.centre);
+    // Between two keys it turns by less than half a turn, or players would take the shorter way.
+    const auto keys = static_cast<size_t>(std::ceil(std::abs(share * turn.angle))) + 1;
+    const Vec3 axis = unitOf(turn.axis);
+    std::vector<float> times, rotations;
+    for (size_t i = 0; i <= keys; ++i) {
+      const double part = double(i) / double(keys), half = 0.5 * part * share * turn.angle;
+      times.push_back(static_cast<float>(part) * arrivalOf(share));
+      for (const double value : axis) rotations.push_back(static_cast<float>(std::sin(half) * value));
+      rotations.push_back(static_cast<float>(std::cos(half)));
+    }
+    animate(number, "rotation", times, rotations, animation);
     return number;
   }
 
@@ -253,7 +294,10 @@ class Writer {
     const bool isPart = answer.status == Status::clear && left != left_.end();
     const size_t material = isPart ? model_.materials.size() - 1 : 1 + static_cast<size_t>(answer.status);
     const int body = addPlaced(query.id, query.scene, query.sensor(), material);
-    const int node = addMoving("sensor " + query.id, body, displacementOf(query), shareOf(query, answer), animation);
+    const std::string sensor = "sensor " + query.id;
+    const double share = shareOf(query, answer);
+    const int node = query.turn ? addTurning(sensor, body, *query.turn, displacementOf(query), share, animation)
+                                : addMoving(sensor, body, displacementOf(query), share, animation);
     tinygltf::Value::Object extras{{"status", tinygltf::Value(model_.materials[material].name)}};
     const auto add = [&](const char* name, double value) {
       if (std::isfinite(value)) extras.insert({name, tinygltf::Value(value)});

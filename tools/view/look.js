@@ -2,7 +2,7 @@
 
 import { COLOURS, MARKS, hashed, viridis } from "./colours.js";
 import { frameOf } from "./scopes.js";
-import { between, cross, lengthOf, minus, plus, times, unit } from "./vectors.js";
+import { between, cross, minus, plus, times, unit } from "./vectors.js";
 import { inDigits } from "./words.js";
 
 /** @typedef {import("./data.js").Answer} Answer */
@@ -61,7 +61,7 @@ export class Look {
   seen() {
     const { data, answer, chosen } = this;
     if (!answer) return null;
-    return answer.hasPoint ? answer.point : plus(data.sensors.centreOf(chosen), times(answer.share, data.way(chosen)));
+    return answer.hasPoint ? answer.point : data.placeAt(chosen, answer.share);
   }
 
   /** Puts everything on a stage. */
@@ -101,20 +101,20 @@ export class Look {
   }
 
   fillSensor(stage, query, seen, crowd) {
-    const { data, chosen } = this, { sensors } = data, way = data.way(query), isChosen = query === chosen;
+    const { data, chosen } = this, isChosen = query === chosen;
     const { kind, hasPoint, saysOnlyWhether, share } = this.answerTo(query);
     const colour = this.colourOf(query), isPale = chosen >= 0 && !isChosen;
     if (isChosen) this.explain(stage, this.answer);
     if (kind !== "invalid") {
-      const moved = times(this.gone(query), way), isSeen = isChosen && !hasPoint;
-      if (seen && !isSeen && stage.hides(sensors, query, moved, seen)) stage.glass(sensors, query, moved, colour, isChosen);
-      else stage.add(sensors, query, moved, isPale ? between(colour, [0.9, 0.9, 0.92], 0.4) : colour, this.numberOf(query));
+      const { placed, i, moved } = data.sensorAt(query, this.gone(query)), isSeen = isChosen && !hasPoint;
+      if (seen && !isSeen && stage.hides(placed, i, moved, seen)) stage.glass(placed, i, moved, colour, isChosen);
+      else stage.add(placed, i, moved, isPale ? between(colour, [0.9, 0.9, 0.92], 0.4) : colour, this.numberOf(query));
     }
     if (crowd < Math.sqrt(150 / 2000) && !isChosen) return;
-    const start = sensors.centreOf(query), end = plus(start, times(saysOnlyWhether ? 1 : share, way));
+    const path = data.path(query, 0, saysOnlyWhether ? 1 : share);
     const dash = { clear: 6, part: 6, undecided: 2 }[kind] ?? (saysOnlyWhether ? 3 : 0);
-    stage.line(start, end, isChosen ? colour : [...colour, isPale ? 0.5 * crowd : crowd], isChosen ? 3 : 1.5, dash);
-    stage.mark(saysOnlyWhether ? start : end, colour, isChosen ? 11 : Math.max(3, 7 * crowd), MARKS[kind]);
+    stage.path(path, isChosen ? colour : [...colour, isPale ? 0.5 * crowd : crowd], isChosen ? 3 : 1.5, dash);
+    stage.mark(saysOnlyWhether ? path[0] : path.at(-1), colour, isChosen ? 11 : Math.max(3, 7 * crowd), MARKS[kind]);
   }
   /** For picking. */
   numberOf(query) {
@@ -123,23 +123,22 @@ export class Look {
 
   /** The chosen query: where its sensor starts, its bracket, what it touches. */
   explain(stage, /** @type {Answer} */ answer) {
-    const { data, chosen } = this, { sensors } = data, way = data.way(chosen);
-    const { share, saysOnlyWhether: whether, otherShare: other } = answer, start = sensors.centreOf(chosen);
+    const { data, chosen } = this, { sensors } = data;
+    const { share, saysOnlyWhether: whether, otherShare: other } = answer;
     if (share > 0) stage.glass(sensors, chosen, [0, 0, 0], COLOURS[answer.kind], true);
-    const at = (part) => plus(start, times(part, way));
-    const beyond = Math.min(1, Math.max(share, data.reach(this.scene) / (lengthOf(way) || 1)));
-    if (!whether) stage.line(at(share), at(beyond), [...COLOURS.path, 0.5], 1.5, 4);
-    const across = times(0.25 * sensors.radius[chosen], unit(cross(way, stage.forward)));
+    const at = (part) => data.placeAt(chosen, part);
+    if (!whether) stage.path(data.path(chosen, share, Math.max(share, data.shareInReach(chosen))), [...COLOURS.path, 0.5], 1.5, 4);
     for (const t of whether ? [] : [answer.lo, answer.hi]) {
       if (!Number.isFinite(t)) continue;
-      const tick = at(data.fractionOf(chosen, t));
+      const part = data.fractionOf(chosen, t), tick = at(part);
+      const across = times(0.25 * sensors.radius[chosen], unit(cross(data.heading(chosen, part), stage.forward)));
       stage.line(minus(tick, across), plus(tick, across), COLOURS.path, 2);
     }
     for (const contact of data.answers[chosen].contacts) stage.mark(at(contact.share), COLOURS.listed, 9, "ring");
     this.explainContact(stage, answer);
     if (other !== null && Math.abs(other - share) > 1e-3) {
-      const moved = times(other, way);
-      stage.glass(sensors, chosen, moved, COLOURS.path, false);
+      const { placed, i, moved } = data.sensorAt(chosen, other);
+      stage.glass(placed, i, moved, COLOURS.path, false);
       stage.mark(at(other), COLOURS.path, 13, "ring");
     }
     const scopes = data.scopes[chosen];
@@ -158,7 +157,8 @@ export class Look {
     // A mesh of which the page has only the box has other triangles.
     const has = (placed, i, triangle) => triangle !== data.none && !placed.meshOf(i).isBox;
     const triangles = [];
-    if (has(sensors, chosen, triA)) triangles.push(place(sensors, chosen, triA, times(share, data.way(chosen))));
+    const sensor = data.sensorAt(chosen, share);
+    if (has(sensors, chosen, triA)) triangles.push(place(sensor.placed, sensor.i, triA, sensor.moved));
     if (has(objects, object, triB)) triangles.push(place(objects, object, triB, moved));
     for (const corners of triangles) {
       stage.triangle(corners, COLOURS.triangle);

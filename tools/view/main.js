@@ -11,7 +11,7 @@ import { Renderer } from "./renderer.js";
 import { drawScopes } from "./scopes.js";
 import { BOX, Stage, TRIANGLE } from "./stage.js";
 import { Table } from "./table.js";
-import { Camera, between, plus, times } from "./vectors.js";
+import { Camera, between } from "./vectors.js";
 import { contactInWords, inWords, kindInWords, sizeInWords } from "./words.js";
 
 class Page {
@@ -102,18 +102,16 @@ class Page {
     for (let i = 0; i < objects.count; ++i) add(objects.centreOf(i), objects.radius[i]);
     for (let i = 0; i < data.queries.count; ++i) {
       if (data.queries.scene[i] !== look.scene) continue;
-      const start = data.sensors.centreOf(i), end = plus(start, times(data.answers[i].share, data.way(i)));
-      for (const place of [start, end]) add(place, data.sensors.radius[i]);
+      for (const place of data.path(i, 0, data.answers[i].share)) add(place, data.sensors.radius[i]);
     }
     this.lookAt(bounds, smooth);
   }
   flyTo(query) {
-    const { data } = this, { sensors } = data, start = sensors.centreOf(query), radius = sensors.radius[query];
+    const { data } = this, radius = data.sensors.radius[query];
     const bounds = new Bounds(), { objects, place } = data.scene(data.queries.scene[query]), answer = this.look.answerTo(query);
     const listed = answer.isListed ? [] : answer.contacts;
-    for (const share of [0, answer.share, answer.otherShare ?? 0, ...listed.map((contact) => contact.share)]) {
-      bounds.add(plus(start, times(share, data.way(query))), radius);
-    }
+    const farthest = Math.max(answer.share, answer.otherShare ?? 0, ...listed.map((contact) => contact.share));
+    for (const place of data.path(query, 0, farthest)) bounds.add(place, radius);
     // What it meets, or what was left out, if it is not much larger.
     const most = bounds.diagonal;
     for (const object of [answer.touched, ...listed.map((contact) => contact.object), ...(data.left[query] ?? [])]) {

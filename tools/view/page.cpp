@@ -153,7 +153,7 @@ Json askedJson(const QuerySpec& query) {
 
 Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   Poses poses;
-  Json ignored = Json::object(), asked = Json::object();
+  Json ignored = Json::object(), asked = Json::object(), turns = Json::object();
   Json ids = Json::array();
   std::vector<uint32_t> scenes;
   std::vector<double> ways, wholes;
@@ -165,8 +165,10 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
     ids.push_back(query.id);
     scenes.push_back(query.scene);
     ways.insert(ways.end(), way.begin(), way.end());
-    wholes.push_back(query.motion ? 1 : query.distance);
-    steps.push_back(query.motion.has_value());
+    wholes.push_back(takesStep(query) ? 1 : query.distance);
+    steps.push_back(takesStep(query));
+    if (query.turn)
+      turns[number] = {{"axis", query.turn->axis}, {"angle", query.turn->angle}, {"centre", query.turn->centre}};
     const std::vector<uint32_t> left = ignoredBy(query, workload.scenes[query.scene]);
     if (!left.empty()) ignored[number] = left;
     Json options = askedJson(query);
@@ -179,6 +181,7 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   json["way"] = array(ways);
   json["whole"] = array(wholes);
   json["step"] = array(steps);
+  json["turns"] = std::move(turns);
   json["asked"] = std::move(asked);
   json["ignored"] = std::move(ignored);
   return json;

@@ -168,6 +168,13 @@ export class Stage {
     lines.floats.set([width * devicePixelRatio, dash * devicePixelRatio], word + 7);
   }
 
+  /** A line through points; of many, a dashed one leaves out every other part. */
+  path(points, colour, width = 1, dash = 0) {
+    for (let i = 1; i < points.length; i += dash && points.length > 2 ? 2 : 1) {
+      this.line(points[i - 1], points[i], colour, width, points.length > 2 ? 0 : dash);
+    }
+  }
+
   point(rows, place, colour, diameter, shape, id = 0) {
     const word = rows.add();
     rows.floats.set(minus(place, this.eye), word);

@@ -83,6 +83,11 @@ export function inWords(/** @type {Answer} */ answer) {
       ? `What blocks it comes within ${precisely(answer.clearance)}, and nearer than it starts (ignore_leaving).`
       : "It may leave what it rests on, or slide along it (ignore_leaving).");
   }
+  const turn = data.queries.turns[query], vector = (numbers) => `(${numbers.map((x) => inDigits(x)).join(", ")})`;
+  if (turn && answer.status !== "invalid") {
+    const degrees = inDigits((turn.angle * 180) / Math.PI, 4);
+    lines.push(`It turns by ${degrees}° about ${vector(turn.axis)} through ${vector(turn.centre)}.`);
+  }
   if (gap > 0) lines.push(`The gap is then ${precisely(gap)} long (drawn).`);
   if (data.reasons[query]) lines.push(data.reasons[query]);
   if (lo < hi && Number.isFinite(lo) && !answer.saysOnlyWhether && answer.status !== "undecided") {

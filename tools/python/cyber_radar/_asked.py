@@ -61,7 +61,8 @@ class Asked:
         ways = arrays["displacements"]
         lengths = np.linalg.norm(ways, axis=-1)
         arrays.setdefault("distances", lengths)
-        ways[~(lengths > 0)] = (0, 0, 1)
+        if "turns: axes" not in arrays:
+            ways[~(lengths > 0)] = (0, 0, 1)
         arrays |= {name: np.array(arrays[name], np.float64) for name in _engine.OPTIONS}
         places = np.stack(np.unravel_index(numbers, self.shape), axis=-1) if self.shape else np.empty((1, 0))
         names = [", ".join(map(str, place)) or "cast" for place in places.tolist()]

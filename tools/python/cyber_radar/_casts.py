@@ -119,8 +119,8 @@ class Casts:
     def _page(self, title: str) -> str:
         if self._asked is None:
             raise ValueError(
-                "show: expected casts that Scene.cast() has answered, got some with turns, that were unpickled or "
-                f"made, or a part of more than {MOST_REMEMBERED:,}"
+                "show: expected casts that Scene.cast() has answered, got some that were unpickled or made, or a part of "
+                f"more than {MOST_REMEMBERED:,}"
             )
         shown = min(self.records.size, _engine.MOST_SHOWN)
         left_out: dict[int, list[int]] = {}

@@ -351,7 +351,7 @@ class Scene:
         for name in _engine.OPTIONS:
             value = {None: np.nan, "all": 0}.get(options[name], options[name])
             arguments.setdefault(name, np.broadcast_to(np.asarray(value, np.float64), shape))
-        casts._asked = None if turns is not None else Asked.of(self._page, self._names, arguments, shape)
+        casts._asked = Asked.of(self._page, self._names, arguments, shape)
         return casts
 
     def _page(self, *shown: Any) -> str:

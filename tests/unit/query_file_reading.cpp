@@ -418,6 +418,44 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
   }
 }
 
+TEST_CASE("a turn to a pose is about a point of the mesh, or the middle of its box, or is refused") {
+  Files files;
+  // Far from the origin, so that the mesh is about a base.
+  files.folder.write("far.obj", "v 4512350 0 0\nv 4512350.5 0 0\nv 4512350 1 0.25\nf 1 2 3\n");
+  nlohmann::json file = goodFile();
+  file["meshes"] = {"far.obj"};
+  file["queries"] = nlohmann::json::parse(R"([{"id": "p", "scene": 0, "sensor": [0, 1,0,0,-4512350, 0,1,0,0, 0,0,1,0],
+    "turn": {"to": [0,-1,0,2, 1,0,0,-4512350, 0,0,1,0]}}])");
+  const auto turnOf = [&](const nlohmann::json& text) {
+    const QuerySpec query = files.read(text.dump()).queries.at(0);
+    REQUIRE((query.turn && query.motion));
+    CHECK(query.turn->angle == Approx(0.5 * 3.14159265358979));
+    CHECK(query.turn->axis[2] > 0.5);
+    return std::pair(query.turn->centre, *query.motion);
+  };
+  const std::array<double, 3> middle{0.25, 0.5, 0.125}, way{2 - 0.5 - 0.25, 0.25 - 0.5, 0};
+  CHECK(turnOf(file) == std::pair(middle, way));
+  file["queries"][0]["turn"]["about"] = {4512350, 1, 0};
+  CHECK(turnOf(file) == std::pair(std::array<double, 3>{0, 1, 0}, std::array<double, 3>{1, -1, 0}));
+  const auto refused = [&](const char* pointer, const char* value) {
+    nlohmann::json changed = file;
+    changed[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(value);
+    return files.refusal(changed.dump());
+  };
+  for (const auto& [pointer, value, words] : std::initializer_list<std::array<const char*, 3>>{
+           {"/queries/0/turn/to", "[0, 1]", "queries[0].turn.to: expected 12 numbers"},
+           {"/queries/0/turn/to", "[1,0,0,0, 1,0,0,0, 0,0,1,0]", "queries[0].turn.to: expected"},
+           {"/queries/0/turn/to", "[-1,0,0,0, 0,-1,0,0, 0,0,1,0]", "queries[0].turn: expected less than half a turn"},
+           {"/queries/0/turn/to", "[2,0,0,0, 0,2,0,0, 0,0,2,0]", "queries[0].turn: expected an end that is the start"},
+           {"/queries/0/turn/about", "[0, 1]", "queries[0].turn.about: expected 3 numbers"},
+           {"/queries/0/turn/about", "[0, 1, 1e300]", "queries[0].turn: about: expected"},
+           {"/queries/0/turn/angle", "1", "queries[0].turn.angle: expected one of the keys to, about"},
+           {"/queries/0/motion", "[0, 0, 1]", "queries[0].motion: expected none beside a turn to a pose"}}) {
+    CAPTURE(pointer, value);
+    CHECK_THAT(refused(pointer, value), StartsWith(words));
+  }
+}
+
 TEST_CASE("turns are written as columns of an array, and read as they were") {
   Files files;
   nlohmann::json file = goodFile();

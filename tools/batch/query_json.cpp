@@ -8,7 +8,9 @@
 
 #include "batch/query_file.h"
 #include "import/float_vertices.h"
+#include "radar/displacement.h"
 #include "workloads/query_fields.h"
+#include "workloads/vectors.h"
 
 namespace radar::tools {
 
@@ -81,6 +83,32 @@ Turn turnFrom(const JsonValue& value) {
   return turn;
 }
 
+/// Of a turn given by the pose at its end: {"to": 12 numbers, "about": a point of the mesh}.
+void readTurnTo(const JsonValue& value, const MeshData& mesh, const std::array<double, 3>& base, QuerySpec& query) {
+  requireKnownKeys(value, {"to", "about"});
+  const JsonValue to = value.member("to");
+  if (to.size() != 12) to.expected("12 numbers");
+  Transform end;
+  for (size_t i = 0; i < 12; ++i) end.m[i] = to[i].number();
+  if (std::string wrong = validate(end); !wrong.empty()) to.refuse(wrong);
+  std::array<double, 3> about{};
+  if (value.has("about")) {
+    about = readVector(value.member("about"));
+    for (size_t k = 0; k < 3; ++k) about[k] -= base[k];
+  } else {
+    const auto box = boundsOf(MeshView{mesh.positions, mesh.indices}, Transform{});
+    for (size_t k = 0; k < 3; ++k) about[k] = 0.5 * (box.low[k] + box.high[k]);
+  }
+  try {
+    const TurnAndMotion found = turnBetween(query.worldFromMesh, aboutBase(end, base), about);
+    query.turn = found.turn;
+    query.motion = found.motion;
+  } catch (const Error& error) {
+    const std::string_view what = error.what();
+    value.refuse(std::string(what.substr(what.find(": ") + 2)));
+  }
+}
+
 Instance instanceFrom(const JsonValue& list, std::span<const std::array<double, 3>> bases) {
   const size_t count = list.size();
   if (count != 1 && count != 13) list.expected("a mesh index, alone or followed by 12 numbers");
@@ -120,7 +148,14 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
         if (std::abs((*spec.motion)[k]) > 0x1p800) motion[k].expected("a number of at most 2^800 beside \"turn\"");
       }
     });
-    query.ifHas("turn", [&](const JsonValue& turn) { spec.turn = turnFrom(turn); });
+    query.ifHas("turn", [&](const JsonValue& turn) {
+      if (!turn.has("to")) {
+        spec.turn = turnFrom(turn);
+        return;
+      }
+      if (spec.motion) query.member("motion").refuse("expected none beside a turn to a pose, which says it");
+      readTurnTo(turn, world.meshes[spec.mesh], bases[spec.mesh], spec);
+    });
   } else {
     const JsonValue direction = query.member("dir");
     spec.direction = readVector(direction);

@@ -92,11 +92,11 @@ constexpr AnswerField kFields[] = {
      "In records only: the query's index."},
     {{{"status"}, kStatus, kMember<&Result::status>, {When::always, When::never, When::always, true}, 152},
      "`hit`: hi <= D. `clear`: certainly no contact within D. `overlap`: the surfaces certainly meet at the start (t = "
-     "lo = hi = 0). `undecided`, in mode `sampled` or with a `clearance`: hi is null, lo <= D. `invalid`: not "
-     "answered, with a `reason`."},
+     "lo = hi = 0). `undecided`, in mode `sampled`, with a `clearance` or a `turn`: hi is null, lo <= D. `invalid`: "
+     "not answered, with a `reason`."},
     {{{"t"}, kReal, kTime<&Result::t>, kOfContact, 8, "fraction"},
      "How far it is to first contact: t*, rounded; in mode `sampled` and with `any_hit`, `hi`; with a "
-     "`clearance`, `lo`. Null for `clear` and `undecided`."},
+     "`clearance` or a `turn`, `lo`. Null for `clear` and `undecided`."},
     {{{"lo"}, kReal, kMember<&Result::lo>, kOfContact, 16, "fraction_lo"}, "No contact before this."},
     {{{"hi"}, kReal, kMember<&Result::hi>, kOfContact, 24, "fraction_hi"},
      "t* lies in [lo, hi], certainly. Null: t* is at least lo *or does not exist*. Contact exactly at D has t = hi = "

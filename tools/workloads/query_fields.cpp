@@ -70,9 +70,8 @@ constexpr QueryField kFields[] = {
      .option = true},
     {.name = "tolerance",
      .member = &Query::tolerance,
-     .about =
-         "With a clearance: how narrow the bracket of the distance is to be; else 1e-6 of the sensor's size, or of the "
-         "clearance if that is more",
+     .about = "With a clearance or a turn: how narrow the bracket is to be, as a length; else 1e-6 of the sensor's "
+              "size, or of the clearance if that is more",
      .cast = true,
      .sampled = Sampled::idle},
 };

@@ -3,6 +3,7 @@
 import ast
 import doctest
 import inspect
+import operator
 import os
 import pathlib
 import re
@@ -14,7 +15,7 @@ import pytest
 
 import cyber_radar
 from conftest import FACES, box
-from cyber_radar import _engine, _scene, _turns
+from cyber_radar import _chain, _engine, _scene, _turns
 
 ROOT = pathlib.Path(__file__).parents[2]
 PACKAGE = pathlib.Path(cyber_radar.__file__).parent
@@ -50,10 +51,10 @@ def prints_what_it_says(script: str, folder: pathlib.Path, command: list[str]) -
     assert expected
 
 
-def test_doctests():
-    for module, examples_at_least in ((_scene, 5), (_turns, 4)):
-        results = doctest.testmod(module, extraglobs={"np": np})
-        assert results.attempted >= examples_at_least and results.failed == 0
+@pytest.mark.parametrize("module", [_chain, _scene, _turns])
+def test_doctests(module):
+    results = doctest.testmod(module, extraglobs={"np": np})
+    assert results.attempted >= 4 and results.failed == 0
 
 
 def test_everything_public_has_a_docstring_and_types():
@@ -80,12 +81,20 @@ def test_the_page_of_query_files_has_the_tables_of_options_and_answers():
     assert options + "\n" in page and answers in page
 
 
-def test_help_shows_the_arguments_of_cast():
+@pytest.mark.parametrize("method", ["Scene.cast", "Chain.move"])
+def test_help_shows_the_arguments_of(method):
     text = subprocess.run(
-        [sys.executable, "-c", "import cyber_radar; help(cyber_radar.Scene.cast)"],
+        [sys.executable, "-c", f"import cyber_radar; help(cyber_radar.{method})"],
         capture_output=True, text=True, check=True, env=os.environ | {"PAGER": "cat"},
     ).stdout  # fmt: skip
-    assert all(f"{name}:" in text for name in inspect.signature(cyber_radar.Scene.cast).parameters if name != "self")
+    names = set(inspect.signature(operator.attrgetter(method)(cyber_radar)).parameters) - {"self", "start", "end"}
+    assert all(f"{name}:" in text for name in names)
+
+
+def test_the_class_of_moves_says_what_each_member_of_a_record_is():
+    text = cyber_radar.Moves.__doc__
+    words = set(re.findall(r"\w+", " ".join(re.findall(r"^    (\w[\w, ]*):", text, re.M))))
+    assert set(_engine.MOVES.names) == words
 
 
 def test_the_stubs_declare_what_the_compiled_half_has():

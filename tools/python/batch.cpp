@@ -160,25 +160,6 @@ void answer(CastingScene& scene, const std::vector<Query>& queries, Answers& all
   for (const auto& [i, reason] : some.reasons) all.reasons[numbers[i]] = reason;
 }
 
-/// The same, while `look`, if there is one, is called from time to time; gives up what it throws at.
-void answerUnless(const std::function<void()>& look, CastingScene& scene, const std::vector<Query>& queries,
-                  Answers& answers, AnswerMode mode) {
-  if (!look) return answer(scene, queries, answers, mode, {});
-  std::stop_source stop;
-  std::exception_ptr thrown;
-  Errands::shared().run([&] { answer(scene, queries, answers, mode, stop.get_token()); },
-                        [&] {
-                          if (thrown) return;
-                          try {
-                            look();
-                          } catch (...) {
-                            thrown = std::current_exception();
-                            stop.request_stop();
-                          }
-                        });
-  if (thrown) std::rethrow_exception(thrown);
-}
-
 void append(BatchLists& to, const Listed& listed, const Query& query) {
   const tools::AnswerLayout& layout = tools::castsLayout(false);
   for (const Result& hit : listed.hits) {
@@ -217,7 +198,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, char* records, con
       Reader reader(scene.based(), input, first + from, objectsMove);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
-    answerUnless(look, scene, queries, answers, input.mode);
+    runUnless(look, [&](const std::stop_token& stop) { answer(scene, queries, answers, input.mode, stop); });
     inParts(end - first, [&](size_t from, size_t to) {
       for (size_t i = from; i < to; ++i) {
         layout.write({queries[i], answers.results[i], input.mode}, records + layout.size * (first + i));

@@ -29,6 +29,7 @@ class CastingScene {
   /// This process's: a forked process makes its own.
   tools::Answerer& answerer();
   std::span<const Device> devices() const;
+  unsigned threads() const { return options_.threads; }
   /// How the device was lost, if that happened since the last call.
   std::vector<std::string> takeLosses() { return std::exchange(losses_, {}); }
 

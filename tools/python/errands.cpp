@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <exception>
 #include <utility>
 
 namespace radar::python {
@@ -13,7 +14,7 @@ Errands::Errands() : thread_([this](const std::stop_token& end) { serve(end); })
 Errands& Errands::shared() {
   static pid_t process = 0;
   static Errands* errands = nullptr;
-  if (process != getpid()) errands = new Errands;
+  if (!errands || process != getpid()) errands = new Errands;
   process = getpid();
   return *errands;
 }
@@ -38,6 +39,23 @@ void Errands::run(const std::function<void()>& work, const std::function<void()>
   given_.notify_one();
   while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) look();
   done.get();
+}
+
+void runUnless(const std::function<void()>& look, const std::function<void(const std::stop_token&)>& work) {
+  if (!look) return work({});
+  std::stop_source stop;
+  std::exception_ptr thrown;
+  Errands::shared().run([&] { work(stop.get_token()); },
+                        [&] {
+                          if (thrown) return;
+                          try {
+                            look();
+                          } catch (...) {
+                            thrown = std::current_exception();
+                            stop.request_stop();
+                          }
+                        });
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace radar::python

@@ -5,6 +5,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 namespace radar::python {
@@ -28,5 +29,9 @@ class Errands {
   std::packaged_task<void()> errand_;
   std::jthread thread_;  // declared last, so that it begins last
 };
+
+/// Does `work`. If there is a `look`, it is called meanwhile, as by Errands::run(), on this thread, which must be the
+/// one that uses Errands::shared(); what it throws requests the stop of the work, and is rethrown when that has ended.
+void runUnless(const std::function<void()>& look, const std::function<void(const std::stop_token&)>& work);
 
 }  // namespace radar::python

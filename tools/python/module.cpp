@@ -10,8 +10,10 @@
 #include "import/mesh_import.h"
 #include "python/arrays.h"
 #include "python/batch.h"
+#include "python/chains.h"
 #include "python/page.h"
 #include "python/scene_methods.h"
+#include "python/signals.h"
 #include "radar/displacement.h"
 #include "view/page.h"
 #include "workloads/answer_fields.h"
@@ -103,12 +105,6 @@ py::tuple listsFor(const Query& options, const BatchLists& found) {
   return py::make_tuple(hits, overlapping, reasons);
 }
 
-/// Python handles signals in this thread alone.
-bool isMainThread() {
-  const py::object main = py::module_::import("threading").attr("main_thread")();
-  return PyThread_get_thread_ident() == main.attr("ident").cast<unsigned long>();
-}
-
 py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, const py::dict& arguments,
                      const py::dict& options, py::array& records, const py::object& afterChunk) {
   BatchInput input{.shape = shape};
@@ -143,13 +139,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   recordsOf(records, tools::castsLayout(input.mode == tools::AnswerMode::sampled), input.count());
   auto* const to = static_cast<char*>(records.mutable_data());
   BatchLists found;
-  std::function<void()> heedSignals;
-  if (isMainThread()) {
-    heedSignals = [] {
-      const py::gil_scoped_acquire acquire;
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    };
-  }
+  const std::function<void()> heedSignals = signalsHeeded();
   {
     const py::gil_scoped_release release;
     found = cast(scene, input, to, heedSignals, [&](size_t done) {
@@ -278,6 +268,7 @@ PYBIND11_MODULE(_engine, module) {
   module.attr("MOST_SHOWN") = radar::tools::kMostShownQueries;
   py::class_<CastingScene> scene(module, "Scene");
   defineScene(module, scene);
+  defineChains(module, scene);
   scene.def("cast", &castArrays).def("page", &castsPage);
   module.def("devices", &deviceReports);
   module.def("read_mesh", &readMesh);

@@ -12,7 +12,7 @@
 of shape (6, 3) make 600 casts, and arrays of shape (100, 6).
 
 help(cyber_radar.Scene) says what a scene holds, help(cyber_radar.Scene.cast) what may be asked, help(cyber_radar.Casts)
-what the answers are. devices() lists the Vulkan devices; mode="reference" needs none.
+what the answers are. help(cyber_radar.Chain) is about robot arms. devices() lists the Vulkan devices; mode="reference" needs none.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ import numpy as _np
 
 from . import _engine
 from ._casts import Casts, Feature, Hits, Overlapping, Status, Tier
+from ._chain import Chain, Link, Moves
 from ._engine import Error
 from ._files import read_mesh
 from ._scene import Objects, Scene
@@ -33,12 +34,15 @@ from ._warnings import DeviceLostWarning, MeshFileWarning, RoundingWarning, Vali
 __version__: str = _engine.version
 __all__ = [
     "Casts",
+    "Chain",
     "DeviceInfo",
     "DeviceLostWarning",
     "Error",
     "Feature",
     "Hits",
+    "Link",
     "MeshFileWarning",
+    "Moves",
     "Objects",
     "Overlapping",
     "RoundingWarning",

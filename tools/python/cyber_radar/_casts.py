@@ -49,31 +49,12 @@ class Feature(enum.IntEnum):
 _MOST_NAMED = 5  # objects in a line
 
 
-@dataclasses.dataclass(eq=False, repr=False)
-class Casts:
-    """Answers, as views into `records`, an array of numpy's of the casts' leading shape (...). What is null in the words
-    below is NaN, and -1 of ids; but t, lo, hi and fraction are inf where there certainly is no contact, and hi where
-    none is certain. Lengths are along the displacement (D), in world units; with turns, t, lo and hi are fractions. 120 bytes a cast, 136 in mode "sampled".
+class Answers:
+    """Members of `records`, a structured array of a leading shape (...), as attributes."""
 
-    An index into the leading shape gives the casts there, with all that they list, as numpy's index would: casts[3],
-    casts[:, 0], casts[casts.touches]. len() and iteration go through the first dimension.
-
-    """
-
+    _called = "answers"  #: in messages
     records: npt.NDArray[Any]
-    """(...) a structured array, whose fields are the members above: numpy.save(file, casts.records)."""
-    hits: Hits | None = None
-    """With hits above 1: the first contact with each of the nearest objects; no rows of casts that ask for 1."""
-    overlapping: Overlapping | None = None
-    """With skip_overlapping: the objects left out."""
-    reasons: dict[str, npt.NDArray[np.int64]] = dataclasses.field(default_factory=dict)
-    """Why casts are invalid: reason -> their positions, counted in C order."""
-    _asked: Asked | None = None
-
-    @classmethod
-    def empty(cls, shape: tuple[int, ...], mode: str = "contact") -> Casts:
-        """Arrays for answers of this shape, to be filled by Scene.cast(out=...)."""
-        return cls(np.empty(shape, record_type(mode)))
+    reasons: dict[str, npt.NDArray[np.int64]]
 
     def __getattr__(self, name: str) -> npt.NDArray[Any]:
         records = self.__dict__.get("records")
@@ -102,6 +83,70 @@ class Casts:
     def to_dict(self) -> dict[str, npt.NDArray[Any]]:
         """The arrays by name, without what is listed: numpy.savez(file, **casts.to_dict())."""
         return {name: self.records[name] for name in self.records.dtype.names}
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError(f"{self._called} of shape () are one {self._called[:-1]}, without a length")
+        return self.shape[0]
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self[i] for i in range(len(self)))
+
+    def __getitem__(self, index: Any) -> Any:
+        raise NotImplementedError
+
+    def _chosen(self, index: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.int64], dict[str, npt.NDArray[np.int64]]]:
+        """Records at an index, as numpy's index would give them, a view if it can; where they are, counted in C order,
+        and the reasons for those that are invalid."""
+        try:
+            chosen = np.arange(self.records.size).reshape(self.shape)[index]
+        except IndexError as error:
+            raise IndexError(f"{self._called} of shape {self.shape}: {error}") from None
+        # A single one is an array, too.
+        records = self.records[index if np.ndim(chosen) else np.unravel_index(chosen, self.shape) + (...,)]
+        chosen = np.ravel(chosen)
+        reasons = {}
+        for reason, found in self.reasons.items():
+            if (isin := np.isin(chosen, found)).any():
+                reasons[reason] = np.flatnonzero(isin)
+        return records, chosen, reasons
+
+    def __repr__(self) -> str:
+        counts = np.bincount(self.status.ravel(), minlength=len(Status))
+        words = ", ".join(f"{counts[status]} {status.name.lower()}" for status in Status if counts[status])
+        return f"<{type(self).__name__} of shape {self.shape}: {words or 'none'}{self._left_out()}>"
+
+    def _left_out(self) -> str:
+        return ""
+
+
+@dataclasses.dataclass(eq=False, repr=False)
+class Casts(Answers):
+    """Answers, as views into `records`, an array of numpy's of the casts' leading shape (...). What is null in the words
+    below is NaN, and -1 of ids; but t, lo, hi and fraction are inf where there certainly is no contact, and hi where
+    none is certain. Lengths are along the displacement (D), in world units; with turns, t, lo and hi are fractions. 120
+    bytes a cast, 136 in mode "sampled".
+
+    An index into the leading shape gives the casts there, with all that they list, as numpy's index would: casts[3],
+    casts[:, 0], casts[casts.touches]. len() and iteration go through the first dimension.
+
+    """
+
+    records: npt.NDArray[Any]
+    """(...) a structured array, whose fields are the members above: numpy.save(file, casts.records)."""
+    hits: Hits | None = None
+    """With hits above 1: the first contact with each of the nearest objects; no rows of casts that ask for 1."""
+    overlapping: Overlapping | None = None
+    """With skip_overlapping: the objects left out."""
+    reasons: dict[str, npt.NDArray[np.int64]] = dataclasses.field(default_factory=dict)
+    """Why casts are invalid: reason -> their positions, counted in C order."""
+    _asked: Asked | None = None
+    _called = "casts"
+
+    @classmethod
+    def empty(cls, shape: tuple[int, ...], mode: str = "contact") -> Casts:
+        """Arrays for answers of this shape, to be filled by Scene.cast(out=...)."""
+        return cls(np.empty(shape, record_type(mode)))
 
     def show(self, file: str | os.PathLike[str] | None = None, *, title: str = "Casts") -> pathlib.Path:
         """A page for a browser, which shows the casts and their scene as it is now: one file that needs no network. Up
@@ -139,40 +184,17 @@ class Casts:
         """Without the scene, of which show() knows."""
         return {name: value for name, value in self.__dict__.items() if name != "_asked"}
 
-    def __len__(self) -> int:
-        if not self.shape:
-            raise TypeError("casts of shape () are one cast, without a length")
-        return self.shape[0]
-
-    def __iter__(self) -> Iterator[Casts]:
-        return (self[i] for i in range(len(self)))
-
     def __getitem__(self, index: Any) -> Casts:
-        try:
-            chosen = np.arange(self.records.size).reshape(self.shape)[index]
-        except IndexError as error:
-            raise IndexError(f"casts of shape {self.shape}: {error}") from None
-        # A single cast is an array, too; of a part, what an index of numpy's would give: a view if it can.
-        part = Casts(self.records[index] if np.ndim(chosen) else self.records[np.unravel_index(chosen, self.shape) + (...,)])
+        records, chosen, reasons = self._chosen(index)
+        part = Casts(records, reasons=reasons)
         part._asked = self._asked[index] if self._asked else None
-        if self.hits is None and self.overlapping is None and not self.reasons:
-            return part
-        chosen = np.ravel(chosen)
         if self.hits is not None:
             rows, offsets = self.hits._rows_of(chosen)
             part.hits = Hits(self.hits.records[rows], offsets=offsets, of_shape=part.shape)
         if self.overlapping is not None:
             rows, offsets = self.overlapping._rows_of(chosen)
             part.overlapping = Overlapping(self.overlapping.object[rows], offsets, part.shape)
-        for reason, casts in self.reasons.items():
-            if (isin := np.isin(chosen, casts)).any():
-                part.reasons[reason] = np.flatnonzero(isin)
         return part
-
-    def __repr__(self) -> str:
-        counts = np.bincount(self.status.ravel(), minlength=len(Status))
-        words = ", ".join(f"{counts[status]} {status.name.lower()}" for status in Status if counts[status])
-        return f"<{type(self).__name__} of shape {self.shape}: {words or 'none'}{self._left_out()}>"
 
     def _left_out(self) -> str:
         """What skip_overlapping left out: of all but these the answers speak."""

@@ -10,6 +10,9 @@ _Doubles = npt.NDArray[np.float64]
 _Ids = npt.NDArray[np.int64]
 _U32 = npt.NDArray[np.uint32]
 _Floats = npt.NDArray[np.float32]
+# Parent, origin (4, 4), joint: fixed, revolute or prismatic, axis, variable; meshes and their poses (4, 4).
+Link = tuple[int | None, _Doubles, int, tuple[float, float, float], int | None, list[tuple[int, _Doubles]]]
+Chain = tuple[list[Link], int, list[tuple[int, int]]]  # links, the number of variables, pairs of links
 _Mesh = tuple[_Floats, _U32, _Doubles]  # vertices about a base, faces, the base: (3,)
 
 version: str
@@ -18,6 +21,7 @@ OPTIONS: list[str]
 ANSWERS: dict[str, str]  # what the members of an answer mean
 CASTS: np.dtype[Any]  # of records
 SAMPLED_CASTS: np.dtype[Any]
+MOVES: np.dtype[Any]
 MAX_RESOLUTION: int
 MOST_SHOWN: int
 
@@ -49,6 +53,17 @@ class Scene:
     ) -> tuple[tuple[npt.NDArray[Any], _Ids] | None, tuple[_Ids, _Ids] | None, dict[str, _Ids]]:
         """Writes `records`. The hits' records and offsets, if any are asked for; what overlaps, likewise; positions by
         reason."""
+    def wrong_with_chain(self, chain: Chain) -> str: ...
+    def move_chain(
+        self,
+        chain: Chain,
+        starts: _Doubles,
+        ends: _Doubles,
+        bases: _Doubles,
+        excluded: list[int],
+        options: dict[str, Any],
+    ) -> tuple[npt.NDArray[Any], dict[str, _Ids]]:
+        """Records (n,), and positions by reason. `bases`: (4, 4), or (n, 4, 4)."""
     def page(
         self,
         object_names: dict[int, str],

@@ -29,6 +29,7 @@ from ._engine import Error
 from ._files import read_mesh
 from ._scene import Objects, Scene
 from ._turns import Turns, turn_between
+from ._urdf import load_urdf
 from ._warnings import DeviceLostWarning, MeshFileWarning, RoundingWarning, ValidationWarning
 
 __version__: str = _engine.version
@@ -52,6 +53,7 @@ __all__ = [
     "Turns",
     "ValidationWarning",
     "devices",
+    "load_urdf",
     "read_mesh",
     "turn_between",
     "versions",

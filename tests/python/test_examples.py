@@ -10,11 +10,11 @@ import numpy as np
 EXAMPLES = pathlib.Path(__file__).parents[2] / "tools/examples"
 sys.path.insert(0, str(EXAMPLES))
 
+import arm  # noqa: E402
 import burr  # noqa: E402
 import cyber_radar  # noqa: E402
 import disassembly  # noqa: E402
-import urdf  # noqa: E402
-from conftest import FACES, box, page_data  # noqa: E402
+from conftest import page_data  # noqa: E402
 from test_scene import ENGINE  # noqa: E402
 
 
@@ -85,30 +85,35 @@ def test_an_engine_comes_apart_and_what_interpenetrates_is_listed(tmp_path):
     assert all(len(group) > 1 for group in told["locked"])
 
 
-ROBOT = """<robot name="arm">
-  <link name="base"><collision><geometry><mesh filename="package://part.obj"/></geometry></collision></link>
-  <link name="arm"><collision><origin xyz="0 0 2"/><geometry><mesh filename="part.obj" scale="1 1 2"/></geometry></collision>
-  </link>
-  <link name="rail"><collision><geometry><mesh filename="part.obj"/></geometry></collision></link>
-  <joint name="elbow" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="3 0 0"/><axis xyz="0 1 0"/></joint>
-  <joint name="slide" type="prismatic"><parent link="arm"/><child link="rail"/><origin rpy="0 0 1.5707963267948966"/>
-    <axis xyz="1 0 0"/></joint>
-</robot>"""
+def test_motions_of_an_arm_among_shelves_are_free_where_samples_are(tmp_path):
+    text = run("arm.py", "--motions", 300, "--out", tmp_path)
+    scene, rng = cyber_radar.Scene(), np.random.default_rng(1)
+    arm.add_shelves(scene, rng)
+    robot = cyber_radar.load_urdf(scene, tmp_path / "arm.urdf")
+    assert len(robot.variables) == 6 and len(robot.links) == 7
+    through = arm.free_configurations(robot, 301, rng)
+    assert (np.abs(through) <= robot.upper).all()
+    start, end = through[:-1], through[1:]
+    samples = start + np.linspace(0, 1, 60)[:, None, None] * (end - start)
+    sampled = robot.move(samples, samples).touches.any(axis=0)
+    moves = robot.move(start, end)
+    assert moves.touches[sampled].all() and (sampled[moves.touches]).mean() > 0.9
+    stopped = moves.touches.sum()
+    assert 50 < stopped < 250
+    assert text.startswith(f"300 motions: {300 - stopped} are free, {stopped} are not, 0 undecided\nhit most: the ")
+    link = text.split("hit most: the ")[1].split(",")[0]
+    hits = (moves.link_names == link).sum()
+    assert f"{link}, in {hits}; the arm hits itself in {(moves.other_link >= 0).sum()}\n" in text
+    assert hits == max((moves.link_names == name).sum() for name in robot.names)
+
+    shown = page_data(tmp_path / "contact.html")  # seven links at five moments
+    assert shown["queries"]["count"] == 35 and "is about to touch object" in shown["title"]
 
 
-def test_the_links_of_a_robot_stand_where_its_joints_put_them(tmp_path):
-    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
-    (tmp_path / "part.obj").write_text("\n".join(lines))
-    (tmp_path / "robot.urdf").write_text(ROBOT)
-    scene = cyber_radar.Scene()
-    assert urdf.add_robot(scene, tmp_path / "robot.urdf", {"elbow": np.pi / 2, "slide": 5}) == {
-        "base": [0], "arm": [1], "rail": [2]
-    }  # fmt: skip
-    base, arm, rail = scene.objects().transforms
-    assert (base[:3] == np.eye(4)[:3]).all()
-    # A quarter about y takes z to x: the arm points along x from (3, 0, 0).
-    np.testing.assert_allclose(arm[:3], [[0, 0, 1, 5], [0, 1, 0, 0], [-1, 0, 0, 0]], atol=1e-15)
-    # Its slide is along the y axis, since its frame is turned about z.
-    np.testing.assert_allclose(rail[:3, 3], [3, 5, 0], atol=1e-15)
-    assert np.ptp(scene.mesh(int(scene.objects().meshes[1]))[0], axis=0).tolist() == [1, 1, 2]
-    assert run("urdf.py", tmp_path / "robot.urdf", "elbow=0.5") == "base 0\narm 1\nrail 2\n"
+def test_a_robot_of_a_file_may_move_among_the_shelves(tmp_path):
+    text = arm.urdf().replace('box size="0.1 0.1 0.5"', 'cylinder radius="0.05" length="0.5"')
+    assert "cylinder" in text
+    (tmp_path / "robot.urdf").write_text(text)
+    text = run("arm.py", tmp_path / "robot.urdf", "--motions", 50, "--segments", 8, "--out", tmp_path / "out")
+    assert text.startswith("50 motions: ")
+    assert [file.name for file in (tmp_path / "out").iterdir()] == ["contact.html"]

@@ -17,6 +17,8 @@ class BracketedContact : public PairVisitor {
   void endObject();
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) final;
   Result first() const;
+  /// Whether the first contact found so far is one with the object.
+  bool isFirst(ObjectId object) const { return !best_.empty() && best_[0].name.object == object; }
   std::vector<Result> nearest() const;
 
  protected:

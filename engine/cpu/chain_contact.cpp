@@ -8,9 +8,15 @@ namespace radar::cpu {
 
 namespace {
 
+// By no more the frame of two links makes lengths longer or shorter than they are in the world, where clearances are.
+constexpr double kKept = 2 * ChainMotion::kKeptLengths;
+
 double radiusOf(const exact::Triangle& corners) {
-  const auto square = [](const Vector& v) { return dot(v, v); };
-  return (1 + 0x1p-40) * std::sqrt(std::max({square(corners[0]), square(corners[1]), square(corners[2])})) + 0x1p-500;
+  double most = 0;
+  for (const Vector& corner : corners) most = std::max(most, dot(corner, corner));
+  // Objects may be as far away as 2^800.
+  if (std::isinf(most)) return 2 * std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
+  return (1 + 0x1p-40) * std::sqrt(most) + 0x1p-500;
 }
 
 }  // namespace
@@ -50,14 +56,14 @@ class ChainContact::Path final : public PairPath {
       for (Vector& corner : b_) corner = minus(corner, base);
       ofB.reach = radiusOf(b_) + norm1(contact.drift_);
       ofB.speed = norm1(contact.drift_);
-      ofB.error = 4 * kUnit * (ofB.reach + norm1(base));
+      ofB.error = 4 * kUnit * ofB.reach;
     } else {
       ofB = motion_.boundsFor(*contact.b_.way, radiusOf(b_), contact.b_.error);
     }
     const double most = ofA.reach + 2 * ofB.reach + clearance_;
     speed_ = ofA.speed + ofB.speed;
     bend_ = (ofA.turning + ofB.turning) / 8;
-    error_ = ofA.error + 2 * ofB.error + 16 * kUnit * (most + speed_);
+    error_ = ofA.error + 2 * ofB.error + 16 * kUnit * (most + speed_) + clearance_ * kKept;
     setUnit(most);
     about_ = contact.isObject_ ? b_[0] : placed(contact.pose(*contact.b_.way, 0), b_[0]);
   }

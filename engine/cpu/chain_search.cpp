@@ -238,16 +238,20 @@ void ChainSearch::searchObject(const Task& task, const Moving& moving, const Pat
   pair.bend = part.bend;
   pair.bendSeen = moving.bendSeen(length, drift, 0, task.query.clearance);
   meshes_.run(pair, finder, pairs_, task.stop);
+  if (!finder.isFirst(name)) who_.pop_back();
 }
 
 void ChainSearch::searchPair(const Task& task, const ChainPlan::Pair& of, ChainContact& finder) {
   const ChainPlan::Body &bodyA = *who_.back().body, &bodyB = *who_.back().other;
-  const Moving a(task.motion, bodyA, of.wayA), b(task.motion, bodyB, of.wayB);
+  // A clearance is a length in the world.
+  const bool isInWorld = task.query.clearance > 0 && !task.motion.keepsLengths(of.wayA.root);
+  const LinkWay &wayA = isInWorld ? bodyA.way : of.wayA, &wayB = isInWorld ? bodyB.way : of.wayB;
+  const Moving a(task.motion, bodyA, wayA), b(task.motion, bodyB, wayB);
   const double clearance = task.query.clearance, speed = a.points.speed + b.points.speed;
   const double error = a.points.error + b.points.error;
   const double count = std::max(a.parts(b.points.speed, b.points.turning, clearance),
                                 b.parts(a.points.speed, a.points.turning, clearance));
-  finder.beginLinks({&of.wayA, &bodyA.way, bodyA.error}, {&of.wayB, &bodyB.way, bodyB.error},
+  finder.beginLinks({&wayA, &bodyA.way, bodyA.error}, {&wayB, &bodyB.way, bodyB.error},
                     pathToleranceOf(task.query, bodyA.box, speed), speed);
   const auto search = [&](double from, double end) {
     const double length = kRoom * (end - from);
@@ -282,8 +286,8 @@ void ChainSearch::searchPair(const Task& task, const ChainPlan::Pair& of, ChainC
     if (finder.isDecided() || finder.latest() < from) return;
     const double middle = from + 0.5 * (end - from), length = kRoom * (end - from);
     const double apart = norm(minus(middleAt(a, middle), middleAt(b, middle))) * (1 - 0x1p-40);
-    const double near =
-        a.half + b.half + clearance + a.middle.error + b.middle.error + (a.middle.speed + b.middle.speed) * length / 2;
+    const double near = a.half + b.half + (1 + 2 * ChainMotion::kKeptLengths) * clearance + a.middle.error +
+                        b.middle.error + (a.middle.speed + b.middle.speed) * length / 2;
     if (apart > kRoom * near) return;
     if (length * count <= 1 + 0x1p-20) return search(from, end);
     self(self, from, middle);

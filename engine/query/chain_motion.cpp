@@ -17,6 +17,20 @@ double norm(const Vector& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
+// By no more a pose makes lengths longer or shorter, as a share of them.
+double stretchOf(const Transform& pose) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) {
+    double sum = 32 * kUnit;
+    for (int k = 0; k < 3; ++k) {
+      const double product = pose.m[i] * pose.m[k] + pose.m[4 + i] * pose.m[4 + k] + pose.m[8 + i] * pose.m[8 + k];
+      sum += std::abs(product - (i == k ? 1 : 0));
+    }
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
 Vector unitOf(const Vector& v) {
   const int exponent = std::ilogb(largest(v));
   Vector out;
@@ -64,10 +78,11 @@ uint32_t commonLink(const Chain& chain, uint32_t a, uint32_t b) {
 }
 
 ChainMotion::ChainMotion(const Chain& chain, const ChainQuery& query)
-    : chain_(chain), query_(query), joints_(chain.links.size()) {
+    : chain_(chain), query_(query), joints_(chain.links.size()), baseStretch_(stretchOf(query.worldFromBase)) {
   for (size_t i = 0; i < joints_.size(); ++i) {
     const Link& link = chain.links[i];
     const Transform& place = link.parentFromJoint;
+    joints_[i].stretch = stretchOf(place);
     joints_[i].arm = kRoom * norm({place.m[3], place.m[7], place.m[11]});
     if (link.joint == JointType::fixed) continue;
     joints_[i].axis = unitOf(link.axis);
@@ -149,6 +164,12 @@ SpinBounds ChainMotion::spinOf(const LinkWay& way) const {
   }
   const double scale = std::pow(kScale, 2.0 * static_cast<double>(way.links.size() + 1)) * kRoom;
   return {scale * out.speed, scale * out.turning};
+}
+
+bool ChainMotion::keepsLengths(uint32_t link) const {
+  double sum = baseStretch_;
+  for (; link != kNone; link = chain_.links[link].parent) sum += joints_[link].stretch;
+  return sum <= kKeptLengths;
 }
 
 }  // namespace radar

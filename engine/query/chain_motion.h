@@ -57,11 +57,16 @@ class ChainMotion {
   /// `radius`, `error`: of the point in the link's frame: its distance from the origin, and what it is off by.
   WayBounds boundsFor(const LinkWay& way, double radius, double error) const;
   SpinBounds spinOf(const LinkWay& way) const;
+  /// Whether the link's frame certainly makes lengths neither longer nor shorter than they are in the world, but for
+  /// kKeptLengths of them: what is rigid to 1e-6 may do so.
+  bool keepsLengths(uint32_t link) const;
+  static constexpr double kKeptLengths = 0x1p-40;
 
  private:
   struct Joint {
     Vector axis{};            // of length 1, off by at most 6u
     double from = 0, by = 0;  // q = from + s by
+    double stretch = 0;       // what keepsLengths() adds up, of the joint's place in its parent
     double arm = 0;           // how far it is from its parent's origin
   };
   Transform linkPose(uint32_t link, double s) const;
@@ -69,6 +74,7 @@ class ChainMotion {
   const Chain& chain_;
   const ChainQuery& query_;
   std::vector<Joint> joints_;  // by link
+  double baseStretch_;
 };
 
 }  // namespace radar

@@ -385,6 +385,67 @@ TEST_CASE("of a chain's way that is cut at half way, the half that meets first d
   CHECK(met > 20);
 }
 
+TEST_CASE("a clearance between links is a length in the world, though poses may be rigid only to a millionth") {
+  Scene scene;
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+  for (const double scale : {1 + 4.9e-7, 1 - 4.9e-7}) {
+    // Two boxes at the end of seven poses, each of which scales by a little; they come nearer to 10 until the end.
+    Transform slightly;
+    for (int k = 0; k < 3; ++k) slightly.m[5 * k] = scale;
+    Chain chain;
+    chain.variables = 1;
+    for (uint32_t i = 0; i < 6; ++i) {
+      chain.links.push_back({.parent = i == 0 ? kNone : i - 1, .parentFromJoint = slightly});
+    }
+    chain.links[5].meshes = {{box, {}}};
+    chain.links.push_back({.parent = 5, .joint = JointType::prismatic, .variable = 0, .meshes = {{box, {}}}});
+    chain.pairs = {{5, 6}};
+    const double all = std::pow(scale, 7), end = 11 + (scale > 1 ? -2e-5 : 2e-5);
+    const double from[] = {12}, to[] = {end};
+    const ChainQuery query{.from = from, .to = to, .worldFromBase = slightly, .clearance = 10};
+    const Result found = answerOf(scene, chain, query).contact;
+    CAPTURE(scale, found.lo, found.hi);
+    const double gap = all * (end - 1);  // in the frame of either box, it is on the other side of 10
+    CHECK(isContact(found) == (gap < 10));
+    if (isContact(found)) CHECK(all * (12 + found.hi * (end - 12) - 1) < 10);
+    if (isContact(found)) CHECK(all * (12 + found.lo * (end - 12) - 1) > 10);
+  }
+}
+
+TEST_CASE("objects as far away as a scene may have them are clear of a chain") {
+  Scene scene;
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+  scene.addObject({.mesh = box, .worldFromMesh = at({0x1p520, 0, 0})});
+  scene.addObject({.mesh = box, .worldFromMesh = at({0, -0x1p800, 0})});
+  Chain chain;
+  chain.variables = 1;
+  chain.links = {{.joint = JointType::revolute, .variable = 0, .meshes = {{box, at({3, 0, 0})}}}};
+  const double from[] = {0}, to[] = {1};
+  for (const double clearance : {0.0, 1.0}) {
+    const ChainQuery query{.from = from, .to = to, .clearance = clearance};
+    CHECK(answerOf(scene, chain, query).contact.status == Status::clear);
+  }
+}
+
+TEST_CASE("a bracket is as narrow far from the origin of the world as near it") {
+  for (const double far : {0.0, 1e6, 1e8}) {
+    Scene scene;
+    const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+    scene.addObject({.mesh = box, .worldFromMesh = at({far + 3.25, 0.3, 0.2})});
+    Chain chain;
+    chain.variables = 1;
+    chain.links = {{.joint = JointType::prismatic, .variable = 0, .meshes = {{box, {}}}}};
+    const double from[] = {0}, to[] = {4};
+    const ChainQuery query{.from = from, .to = to, .worldFromBase = at({far, 0, 0}), .tolerance = 1e-9};
+    const Result found = answerOf(scene, chain, query).contact;
+    CAPTURE(far, found.lo, found.hi);
+    REQUIRE(found.status == Status::hit);
+    CHECK(found.lo <= 2.25 / 4);
+    CHECK(found.hi >= 2.25 / 4);
+    CHECK((found.hi - found.lo) * 4 <= 1e-9);
+  }
+}
+
 TEST_CASE("a chain, or a question about one, that says nothing is refused by name") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({1, 1, 1}));

@@ -1,4 +1,5 @@
 // Machines that fit with little room: what turns in them touches nothing, and does so once it is made a little wrong.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>

@@ -29,7 +29,7 @@ struct LinkMesh {
 /// moves by that length along axis / |axis| (prismatic), or does nothing (fixed). As in URDF.
 struct Link {
   uint32_t parent = kNone;      ///< a link before this one; kNone: the base
-  Transform parentFromJoint{};  ///< rigid: its 3x3 part times its transpose differs from 1 by at most 1e-6
+  Transform parentFromJoint{};  ///< rigid: products of its columns differ from 0 and 1 by at most 1e-6
   JointType joint = JointType::fixed;
   std::array<double, 3> axis{1, 0, 0};  ///< in the joint's frame; of any length but 0
   uint32_t variable = kNone;            ///< of a joint that is not fixed; joints may share one
@@ -60,8 +60,10 @@ struct ChainQuery {
 
 /// Of the exact motion: no link certainly has a point in common (with a clearance, is as near) with an object, or with
 /// a link that it is tested with, before `contact.lo`, and at `contact.hi` some certainly cross (are nearer). t, lo and
-/// hi are s. (hi - lo) times the greatest speed of the link's mesh is at most the tolerance where a contact gets
-/// deeper than that; another may be undecided, as may contact within rounding of either end.
+/// hi are s. (hi - lo) times the greatest speed of the link's mesh is at most the tolerance, if rounding allows, where
+/// a contact gets deeper than that at once. Another may be undecided, or have a wider bracket, as may what only touches
+/// at the start, or at the end to within rounding; so may, without a clearance, a point or a segment that passes
+/// through a face, and boxes that slide into boxes of the same width.
 struct ChainResult {
   Result contact{};  ///< triA: of the link's mesh; triB: of the object's or of the other link's, which are touched
   uint32_t link = kNone, mesh = kNone;            ///< the mesh's number among the link's

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "math/frame.h"
+
 namespace radar::cpu {
 
 namespace {
@@ -65,7 +67,7 @@ class ChainContact::Path final : public PairPath {
     bend_ = (ofA.turning + ofB.turning) / 8;
     error_ = ofA.error + 2 * ofB.error + 16 * kUnit * (most + speed_) + clearance_ * kKept;
     setUnit(most);
-    about_ = contact.isObject_ ? b_[0] : placed(contact.pose(*contact.b_.way, 0), b_[0]);
+    about_ = contact.isObject_ ? b_[0] : transform(contact.pose(*contact.b_.way, 0), b_[0]);
   }
 
   Places at(double s) const override {
@@ -86,8 +88,8 @@ class ChainContact::Path final : public PairPath {
     Transform poseB;
     if (!contact_.isObject_) poseB = motion_.pose(*contact_.b_.worldWay, s);
     for (int i = 0; i < 3; ++i) {
-      a[i] = placed(poseA, a_[i]);
-      b[i] = radar::along(placed(poseB, b_[i]), s, contact_.drift_);
+      a[i] = transform(poseA, a_[i]);
+      b[i] = radar::along(transform(poseB, b_[i]), s, contact_.drift_);
     }
     Separation found = separationOf(a, b);
     found.point = radar::along(found.point, 1, motion_.base());
@@ -96,7 +98,7 @@ class ChainContact::Path final : public PairPath {
 
  private:
   void put(const Transform& pose, const exact::Triangle& from, exact::Triangle& to) const {
-    for (int i = 0; i < 3; ++i) to[i] = scaled(unit_, minus(placed(pose, from[i]), about_));
+    for (int i = 0; i < 3; ++i) to[i] = scaled(unit_, minus(transform(pose, from[i]), about_));
   }
 
   const ChainContact& contact_;

@@ -4,32 +4,15 @@
 #include <cmath>
 #include <utility>
 
-#include "cpu/turn_contact.h"
-#include "math/float_environment.h"
+#include "math/frame.h"
 #include "query/swept.h"
-#include "scene/parallel.h"
 
 namespace radar::cpu {
 
 namespace {
 
 constexpr double kRoom = 1 + 0x1p-40;  // for the roundings of bounds
-// Radians of a part, at most.
-constexpr double kMostAngle = 0.25;
-// How far points may bend away from straight ways: as a share of the body's radius, or of the length of its edges.
-constexpr double kBend = 0.05, kBendOfEdge = 0.5;
-constexpr double kMostParts = 1 << 14;
-constexpr double kSteps = 8;  // of a part
-
-double norm(const Vector& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
-double lengthen(const Transform& pose, double length) {
-  double most = 0;
-  for (int k = 0; k < 3; ++k) most = std::max(most, norm({pose.m[k], pose.m[4 + k], pose.m[8 + k]}) * length);
-  return most;
-}
+constexpr double kSteps = 8;           // of a part
 
 }  // namespace
 
@@ -61,8 +44,7 @@ ChainPlan::ChainPlan(const Chain& chain, const Scene::Impl& scene) {
       }
       body.half = kRoom * norm(half);
       body.radius = kRoom * norm(far);
-      body.least =
-          std::max(std::min(kBend * body.half, kBendOfEdge * lengthen(pose, mesh.meanEdge)), 0x1p-10 * body.half);
+      body.least = bendAllowed(mesh, pose, body.half);
       ofLink[link].push_back(bodies.size());
       bodies.push_back(std::move(body));
     }
@@ -111,11 +93,8 @@ struct ChainSearch::Moving {
   /// In how many parts a body that moves so may be searched past points that do.
   double parts(double speed, double turning, double clearance) const {
     const double least = std::max(body.least, 0x1p-14 * (points.speed + speed));
-    double count = std::max(std::ceil(spin.speed / kMostAngle), 1.0);
-    while (count < kMostParts && std::max(bend(1 / count), bendSeen(1 / count, speed, turning, clearance)) > least) {
-      count *= 1.5;
-    }
-    return std::min(std::ceil(count), kMostParts);
+    return partsOf(spin.speed, least,
+                   [&](double share) { return std::max(bend(share), bendSeen(share, speed, turning, clearance)); });
   }
 };
 
@@ -177,7 +156,7 @@ class ChainSearch::Ahead {
     Transform pose = motion_.pose(moving_.way, s);
     const Vector base = motion_.base();
     for (int k = 0; k < 3; ++k) pose.m[4 * k + 3] += base[k];
-    return {s, product(pose, moving_.body.pose), placed(pose, moving_.body.middle)};
+    return {s, product(pose, moving_.body.pose), transform(pose, moving_.body.middle)};
   }
 
   const ChainMotion& motion_;
@@ -278,7 +257,7 @@ void ChainSearch::searchPair(const Task& task, const ChainPlan::Pair& of, ChainC
     meshes_.run(pair, finder, pairs_, task.stop);
   };
   const auto middleAt = [&](const Moving& moving, double s) {
-    return placed(task.motion.pose(moving.way, s), moving.body.middle);
+    return transform(task.motion.pose(moving.way, s), moving.body.middle);
   };
   // Earlier halves first; none in which balls around both stay apart.
   const auto visit = [&](const auto& self, double from, double end) -> void {

@@ -8,6 +8,7 @@ namespace radar::cpu {
 
 namespace {
 
+constexpr double kTolerance = 1e-6;  // of the longest side of the sensor's box, or of the clearance
 // Of the tolerance: what gets no deeper may be left undecided.
 constexpr double kShallow = 0.25;
 
@@ -42,6 +43,12 @@ struct Extent {
 };
 
 }  // namespace
+
+double pathToleranceOf(const Query& query, const Box& box, double speed) {
+  double size = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2], query.clearance});
+  if (size == 0) size = speed;  // a bare point
+  return std::min(query.tolerance.value_or(INFINITY), kTolerance * size);
+}
 
 void PairPath::setUnit(double most) {
   unit_ = std::scalbn(1.0, -std::clamp(std::ilogb(std::max(most, 0x1p-1000)), -1000, 1000));

@@ -6,6 +6,10 @@
 
 namespace radar::cpu {
 
+/// World units: how narrow brackets are to be, times the greatest speed (Query::tolerance), of what is in `box`.
+/// `speed`: of a sensor without a size, which replaces it.
+double pathToleranceOf(const Query& query, const Box& box, double speed);
+
 /// How two triangles move.
 class PairPath {
  public:

@@ -5,13 +5,12 @@
 
 namespace radar::cpu {
 
-namespace {
-
-double norm(const Vector& v) {
-  return std::hypot(v[0], v[1], v[2]);
+double bendAllowed(const Mesh& mesh, const Transform& pose, double radius) {
+  constexpr double kBend = 0.05, kBendOfEdge = 0.5, kLeast = 0x1p-10;  // of the radius, of an edge
+  double longest = 0;                                                  // of the axes' images
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, norm({pose.m[k], pose.m[4 + k], pose.m[8 + k]}));
+  return std::max(std::min(kBend * radius, kBendOfEdge * longest * mesh.meanEdge), kLeast * radius);
 }
-
-}  // namespace
 
 PathPart::PathPart(const Mesh& mesh, const End& first, const End& last, double bending, double rounding)
     : from(first.s),

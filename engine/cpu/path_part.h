@@ -2,9 +2,29 @@
 // from the straight ways between them its points get. docs/method.md derives the bounds.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "cpu/node_test.h"
 
 namespace radar::cpu {
+
+inline double norm(const Vector& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+/// World units: how far points of a mesh may bend off their straight ways in a part. `radius`: of the placed mesh.
+double bendAllowed(const Mesh& mesh, const Transform& pose, double radius);
+/// In how many equal parts a way of that `angle`, radians, is searched. `bend`: double(double share): how far points
+/// bend off in such a share of the way.
+template <class Bend>
+double partsOf(double angle, double allowed, const Bend& bend) {
+  // A part's box is at most an eighth larger than the mesh's, and takes some 700 bytes.
+  constexpr double kMostAngle = 0.25, kMostParts = 1 << 14;
+  double count = std::max(std::ceil(angle / kMostAngle), 1.0);
+  while (count < kMostParts && bend(1 / count) > allowed) count *= 1.5;
+  return std::min(std::ceil(count), kMostParts);
+}
 
 /// A part of a way, past objects that stand. Its straight way, for the walk of the tree over objects, is that of a box.
 struct PathPart {

@@ -4,18 +4,6 @@
 
 namespace radar::cpu {
 
-namespace {
-
-constexpr double kTolerance = 1e-6;  // of the longest side of the sensor's box, or of the clearance
-
-}  // namespace
-
-double pathToleranceOf(const Query& query, const Box& box, double speed) {
-  double size = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2], query.clearance});
-  if (size == 0) size = speed;  // a bare point
-  return std::min(query.tolerance.value_or(INFINITY), kTolerance * size);
-}
-
 /// About a corner of b.
 class TurnContact::Path final : public PairPath {
  public:

@@ -6,10 +6,6 @@
 
 namespace radar::cpu {
 
-/// World units: how narrow brackets are to be, times the greatest speed (Query::tolerance), of what is in `box`.
-/// `speed`: of a sensor without a size, which replaces it.
-double pathToleranceOf(const Query& query, const Box& box, double speed);
-
 class TurnContact final : public PathContact {
  public:
   /// All outlive this.

@@ -7,16 +7,6 @@ namespace radar::cpu {
 
 namespace {
 
-// Radians of a part, at most: its box is then at most an eighth larger than the sensor's.
-constexpr double kMostAngle = 0.25;
-// How far points may bend away from straight ways: as a share of the sensor's radius, or of the length of its edges.
-constexpr double kBend = 0.05, kBendOfEdge = 0.5;
-constexpr double kMostParts = 1 << 14;  // of some 700 bytes
-
-double norm(const Vector& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
 // A point that is `radius` from the axis, in a part of which the angle is `by` and the straight motion `way`, and as
 // seen from a body that turns: second derivatives, over 8.
 double bendOf(double radius, double by) {
@@ -40,13 +30,9 @@ TurnMotion::TurnMotion(const Query& query, const Mesh& sensor) : turning_(query)
   radius_ = (1 + 0x1p-40) * (turning_.radius(middle) + reach + query.clearance) + 0x1p-40 * arm;
   const Vector& way = turning_.way();
   const double angle = turning_.angle(), length = norm(way);
-  double edge = 0;
-  for (int k = 0; k < 3; ++k) edge = std::max(edge, norm({pose.m[k], pose.m[4 + k], pose.m[8 + k]}) * sensor.meanEdge);
-  const double allowed =
-      std::max({std::min(kBend * reach, kBendOfEdge * edge), 0x1p-10 * reach, 0x1p-14 * (radius_ + length)});
-  double count = std::ceil(angle / kMostAngle);
-  while (count < kMostParts && bendSeenFromBody(radius_, angle / count, length / count) > allowed) count *= 1.5;
-  count = std::min(std::ceil(count), kMostParts);
+  const double allowed = std::max(bendAllowed(sensor, pose, reach), 0x1p-14 * (radius_ + length));
+  const double count =
+      partsOf(angle, allowed, [&](double share) { return bendSeenFromBody(radius_, share * angle, share * length); });
 
   double terms = norm(minus({pose.m[3], pose.m[7], pose.m[11]}, turning_.centre()));
   for (int k = 0; k < 3; ++k) terms += norm({pose.m[k], pose.m[4 + k], pose.m[8 + k]}) * sensor.span()[k];

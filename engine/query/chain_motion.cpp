@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/frame.h"
 #include "math/rounding.h"
+#include "query/turning.h"
 
 namespace radar {
 
@@ -12,10 +14,6 @@ namespace {
 constexpr double kRoom = 1 + 0x1p-40;  // for the roundings of bounds
 // By no more a rigid pose makes lengths longer, or shorter: of M^T M - 1 no row adds up to more than 3e-6.
 constexpr double kScale = 1 + 0x1p-18;
-
-double norm(const Vector& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
 
 // By no more a pose makes lengths longer or shorter, as a share of them.
 double stretchOf(const Transform& pose) {
@@ -29,13 +27,6 @@ double stretchOf(const Transform& pose) {
     most = std::max(most, sum);
   }
   return most;
-}
-
-Vector unitOf(const Vector& v) {
-  const int exponent = std::ilogb(largest(v));
-  Vector out;
-  for (int k = 0; k < 3; ++k) out[k] = std::scalbn(v[k], -exponent);
-  return scaled(1 / std::sqrt(dot(out, out)), out);
 }
 
 // A turn about an axis of length 1. 1 - cos as 2 sin^2, so that tiny angles lose nothing.
@@ -83,7 +74,7 @@ ChainMotion::ChainMotion(const Chain& chain, const ChainQuery& query)
     const Link& link = chain.links[i];
     const Transform& place = link.parentFromJoint;
     joints_[i].stretch = stretchOf(place);
-    joints_[i].arm = kRoom * norm({place.m[3], place.m[7], place.m[11]});
+    joints_[i].arm = kRoom * lengthOf({place.m[3], place.m[7], place.m[11]});
     if (link.joint == JointType::fixed) continue;
     joints_[i].axis = unitOf(link.axis);
     joints_[i].from = query.from[link.variable];

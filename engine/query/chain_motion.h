@@ -12,15 +12,6 @@ namespace radar {
 /// Places by `inner`, then by `outer`.
 Transform product(const Transform& outer, const Transform& inner);
 
-inline Vector placed(const Transform& pose, const Vector& p) {
-  Vector out;
-  for (int i = 0; i < 3; ++i) {
-    const double* r = &pose.m[4 * i];
-    out[i] = r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3];
-  }
-  return out;
-}
-
 /// The joints from a frame out to a link's. `root`: a link, or kNone: the base, placed in the world but for its
 /// position, which the frame's origin is.
 struct LinkWay {

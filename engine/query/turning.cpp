@@ -6,18 +6,12 @@
 
 namespace radar {
 
-namespace {
-
-/// Of length 1; components that differ by a factor of 2^1000 lose the lesser ones.
 Vector unitOf(const Vector& v) {
-  const double most = largest(v);
-  const int exponent = std::ilogb(most);
+  const int exponent = std::ilogb(largest(v));
   Vector out;
   for (int k = 0; k < 3; ++k) out[k] = std::scalbn(v[k], -exponent);
   return scaled(1 / std::sqrt(dot(out, out)), out);
 }
-
-}  // namespace
 
 Turning::Turning(const Query& query)
     : axis_(unitOf(query.turn->axis)),

@@ -6,6 +6,10 @@
 
 namespace radar {
 
+/// `v`, which is not zero, at length 1, off by at most 6u; components that differ by a factor of 2^1000 lose the lesser
+/// ones.
+Vector unitOf(const Vector& v);
+
 /// x(s) = centre + s way + R(axis / |axis|, s angle) (p - centre): centre and way are not rounded, nor is angle.
 class Turning {
  public:

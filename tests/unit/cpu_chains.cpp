@@ -201,6 +201,40 @@ TEST_CASE("a forearm folds back onto its own upper arm at the angle that geometr
   CHECK(folded.contact.point[1] == Approx(point[1]).margin(1e-4));
 }
 
+TEST_CASE("what a link meets only amid its arc, within it or beyond it, is found") {
+  Random random(9);
+  for (int trial = 0; trial < 400; ++trial) {
+    Scene scene;
+    const tools::MeshData one = tools::makeBox({0.1f, 1e-3f, 1e-3f});
+    // A bar, or two that are opposite to each other, so that their middle stands.
+    tools::MeshData moved = one;
+    const bool isPair = random.oneIn(2);
+    if (isPair) {
+      for (const uint32_t vertex : one.indices) moved.indices.push_back(one.vertexCount() + vertex);
+      moved.positions.insert(moved.positions.end(), one.positions.begin(), one.positions.end());
+    }
+    // Two bars on one ray from the axis amid the motion. They overlap there by a share of what the inner or the outer
+    // one's arc differs from its chord.
+    const double angle = random.uniform(0.02, 0.12), overlap = random.uniform(0.2, 0.8) * angle * angle / 8;
+    const double inner = 0.95 + overlap, outer = 1.05;
+    const bool isOuter = random.oneIn(2);
+    const double radius = isOuter ? outer : inner;
+    for (size_t i = 0; i < moved.positions.size(); i += 3) {
+      moved.positions[i] += static_cast<float>(i < one.positions.size() ? radius : -radius);
+    }
+    const MeshId bar = add(scene, one), link = add(scene, moved);
+    const Vector place = scaled(random.magnitude(-2, 2), random.direction());
+    scene.addObject({.mesh = bar, .worldFromMesh = at(along(place, 1, {isOuter ? inner : outer, 0, 0}))});
+    Chain chain;
+    chain.variables = 1;
+    chain.links = {{.joint = JointType::revolute, .axis = {0, 0, 1}, .variable = 0, .meshes = {{link, {}}}}};
+    const double from[] = {-angle / 2}, to[] = {angle / 2};
+    const ChainQuery query{.from = from, .to = to, .worldFromBase = at(place)};
+    CAPTURE(trial, angle, overlap, isOuter, isPair, place[0]);
+    CHECK(answerOf(scene, chain, query).contact.status == Status::hit);
+  }
+}
+
 TEST_CASE("a chain of one joint turns as a turn does, and one of three slides as a step does") {
   Random random(1);
   Scene scene;

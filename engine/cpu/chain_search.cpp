@@ -203,18 +203,9 @@ void ChainSearch::searchObject(const Task& task, const Moving& moving, const Pat
   who_.push_back({&body, id, nullptr});
   finder.beginObject({&body.way, &body.way, body.error}, object.motion, pathToleranceOf(task.query, body.box, speed),
                      speed);
-  PathPair pair{{*body.mesh, body.pose, body.placement}, {mesh, object.worldFromMesh, placement}, name};
-  pair.from = part.from;
-  pair.end = part.end;
-  for (int e = 0; e < 2; ++e) {
-    pair.a[e] = {&part.at[e], &part.axes[e]};
-    pair.b[e] = {&placement, nullptr};
-    const Vector moved = along(placement.origin, e == 0 ? part.from : part.end, object.motion);
-    pair.gap[e] = minus(moved, part.at[e].origin);
-  }
+  PathPair pair = pairOf({*body.mesh, body.pose, body.placement}, part, {mesh, object.worldFromMesh, placement}, name,
+                         object.motion, task.query.clearance);
   pair.steps = kSteps;
-  pair.apart = task.query.clearance + part.error + 8 * kUnit * drift;
-  pair.bend = part.bend;
   pair.bendSeen = moving.bendSeen(length, drift, 0, task.query.clearance);
   meshes_.run(pair, finder, pairs_, task.stop);
   if (!finder.isFirst(name)) who_.pop_back();

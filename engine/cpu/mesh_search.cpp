@@ -301,6 +301,22 @@ class PathTests {
 
 }  // namespace
 
+PathPair pairOf(const PlacedMesh& body, const PathPart& part, const PlacedMesh& object, ObjectId name,
+                const Vector& drift, double clearance) {
+  PathPair pair{body, object, name};
+  pair.from = part.from;
+  pair.end = part.end;
+  for (int e = 0; e < 2; ++e) {
+    pair.a[e] = {&part.at[e], &part.axes[e]};
+    pair.b[e] = {&object.placement, nullptr};
+    const Vector moved = along(object.placement.origin, e == 0 ? part.from : part.end, drift);
+    pair.gap[e] = minus(moved, part.at[e].origin);
+  }
+  pair.apart = clearance + part.error + 8 * kUnit * norm1(drift);
+  pair.bend = part.bend;
+  return pair;
+}
+
 void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs,
                      const std::stop_token& stop) {
   const auto search = [&](auto test) {

@@ -46,6 +46,11 @@ struct PathPair {
                         ///< are dear to compute
 };
 
+/// What a body in a part of its way and an object, which moves by `drift` in all of s, have in common with any others;
+/// the bends are to be set.
+PathPair pairOf(const PlacedMesh& body, const PathPart& part, const PlacedMesh& object, ObjectId name,
+                const Vector& drift, double clearance);
+
 /// Reuses its memory between searches. For one thread at a time.
 class MeshSearch {
  public:

@@ -132,17 +132,9 @@ void QuerySearch::searchTurning(const Task& task, ObjectId id, const TurnMotion&
   if (finder.isBefore({id, mesh.tree.below[0].least, 0})) return;
   const MeshPlacement placement(mesh, object.worldFromMesh);
   finder.beginObject(object.motion);
-  PathPair pair{{task.sensor, task.query.worldFromMesh, task.placement}, {mesh, object.worldFromMesh, placement}, id};
-  pair.from = part.from;
-  pair.end = part.end;
-  for (int e = 0; e < 2; ++e) {
-    pair.a[e] = {&part.at[e], &part.axes[e]};
-    pair.b[e] = {&placement, nullptr};
-    const Vector moved = along(placement.origin, e == 0 ? part.from : part.end, object.motion);
-    pair.gap[e] = minus(moved, part.at[e].origin);
-  }
-  pair.apart = task.query.clearance + part.error + 8 * kUnit * norm1(object.motion);
-  pair.bend = part.bend;
+  const PlacedMesh sensor{task.sensor, task.query.worldFromMesh, task.placement};
+  PathPair pair =
+      pairOf(sensor, part, {mesh, object.worldFromMesh, placement}, id, object.motion, task.query.clearance);
   pair.bendSeen = motion.bendSeen(part, object.motion);
   pair.axis = motion.turning().axis();
   meshes_.run(pair, finder, pairs_, *stop_);

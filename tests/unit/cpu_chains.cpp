@@ -3,14 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "cpu/approach.h"
-#include "exact/blocking.h"
 #include "query/chain_motion.h"
 #include "radar/chain.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
 #include "support/catch.h"
 #include "support/seeds.h"
+#include "support/shape.h"
 #include "workloads/shapes.h"
 
 using namespace radar;
@@ -68,6 +67,8 @@ Place jointPlace(const Link& link, Real q) {
   return out;
 }
 
+using test::Shape;
+
 /// A chain and all objects at any time.
 class Truth {
  public:
@@ -94,7 +95,7 @@ class Truth {
     for (const auto& [a, b] : chain_.pairs) {
       for (const Shape& first : links[a]) {
         for (const Shape& second : links[b]) {
-          if (near(first, second, slack)) return true;
+          if (test::meet(first, second, query_.clearance, slack)) return true;
         }
       }
     }
@@ -104,7 +105,7 @@ class Truth {
       const Shape other = shapeOf(scene_.meshes[object.mesh], placeOf(object.worldFromMesh), scaled(s, object.motion));
       for (const std::vector<Shape>& link : links) {
         for (const Shape& shape : link) {
-          if (near(shape, other, slack)) return true;
+          if (test::meet(shape, other, query_.clearance, slack)) return true;
         }
       }
     }
@@ -112,10 +113,6 @@ class Truth {
   }
 
  private:
-  struct Shape {
-    std::vector<exact::Triangle> triangles{};
-    Box box{};
-  };
   static Shape shapeOf(const Mesh& mesh, const Place& place, const Vector& moved) {
     Shape out;
     for (uint32_t i = 0; i < mesh.triangleCount(); ++i) {
@@ -126,25 +123,11 @@ class Truth {
           corners[c][k] = double(place[4 * k] * p[0] + place[4 * k + 1] * p[1] + place[4 * k + 2] * p[2] +
                                  place[4 * k + 3] + moved[k]);
         }
-        out.box.add(corners[c]);
       }
-      out.triangles.push_back(corners);
+      out.add(corners);
     }
     return out;
   }
-  bool near(const Shape& first, const Shape& second, double slack) const {
-    if (!overlap(first.box, second.box, query_.clearance)) return false;
-    for (const exact::Triangle& a : first.triangles) {
-      for (const exact::Triangle& b : second.triangles) {
-        if (query_.clearance == 0 ? exact::cross(a, b, slack)
-                                  : cpu::separationOf(a, b).distance < query_.clearance - slack) {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
   const Chain& chain_;
   const ChainQuery& query_;
   const Scene::Impl& scene_;

@@ -2,13 +2,12 @@
 // contact, which long doubles place.
 #include <cmath>
 
-#include "cpu/approach.h"
-#include "exact/blocking.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/seeds.h"
+#include "support/shape.h"
 #include "workloads/shapes.h"
 
 using namespace radar;
@@ -18,20 +17,12 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-struct Placed {
-  std::vector<exact::Triangle> triangles;
-  Box box;
-};
-
-Placed placed(const Mesh& mesh, const Transform& pose, const auto& move) {
-  Placed out;
+test::Shape placed(const Mesh& mesh, const Transform& pose, const auto& move) {
+  test::Shape out;
   for (uint32_t i = 0; i < mesh.triangleCount(); ++i) {
     exact::Triangle corners = placedTriangle(mesh, pose, i);
-    for (Vector& corner : corners) {
-      corner = move(corner);
-      out.box.add(corner);
-    }
-    out.triangles.push_back(corners);
+    for (Vector& corner : corners) corner = move(corner);
+    out.add(corners);
   }
   return out;
 }
@@ -66,20 +57,12 @@ class Truth {
 
   /// Whether surfaces cross by more than `slack`; with a clearance, whether they are nearer than that less `slack`.
   bool meet(double s, double slack) const {
-    const Placed sensor =
+    const test::Shape sensor =
         placed(scene_.meshes[query_.mesh], query_.worldFromMesh, [&](const Vector& p) { return turned(query_, p, s); });
     for (const Scene::Impl::ObjectSlot& slot : scene_.objects) {
       const auto move = [&](const Vector& p) { return along(p, s, slot.object.motion); };
-      const Placed other = placed(scene_.meshes[slot.object.mesh], slot.object.worldFromMesh, move);
-      if (!overlap(sensor.box, other.box, query_.clearance)) continue;
-      for (const exact::Triangle& a : sensor.triangles) {
-        for (const exact::Triangle& b : other.triangles) {
-          if (query_.clearance == 0 ? exact::cross(a, b, slack)
-                                    : cpu::separationOf(a, b).distance < query_.clearance - slack) {
-            return true;
-          }
-        }
-      }
+      const test::Shape other = placed(scene_.meshes[slot.object.mesh], slot.object.worldFromMesh, move);
+      if (test::meet(sensor, other, query_.clearance, slack)) return true;
     }
     return false;
   }

@@ -70,17 +70,19 @@ struct Pair {
   Real clearance, distance, tolerance;
 };
 
+/// `first`: where the nearest points may be.
 template <class Real>
-Moment<Real> momentAt(const Pair<Real>& pair, const Real& t) {
+Moment<Real> momentAt(const Pair<Real>& pair, const Real& t, exact::FeaturePlace first = exact::kAnyPlace) {
   const auto& [edges, gaps, unit, clearance, distance, tolerance] = pair;
+  Moment<Real> m;
   Corners<Real> b;
   for (size_t k = 0; k < 3; ++k) b[k] = gaps[k] - t * unit;
-  Moment<Real> m{.nearest = nearestPoints(edges, b)};
   // Differences, the motion and its direction lose less than 16u of these numbers; the nearest points, whatever their
   // weights, and inner products with a unit vector less than 16u more.
   double size = Of<Real>::rounded(t);
   for (size_t k = 0; k < 3; ++k) size = std::max({size, norm1(gaps[k]), norm1(b[k]), norm1(edges[k])});
   m.error = Real{64 * Of<Real>::unit * size + std::numeric_limits<double>::min()};
+  m.nearest = nearestPoints(edges, b, Real{0.5} * m.error, first);
   const Point<Real> gap = m.nearest.b - m.nearest.a;
   const Real length = Of<Real>::root(dot(gap, gap));
   m.most = length + m.error;
@@ -105,27 +107,46 @@ struct Found {
   bool isRough = false;              ///< more digits may help
 };
 
+/// Of a rate: of two unit vectors and their inner product.
+template <class Real>
+inline constexpr Real kRateError{64 * Of<Real>::unit};
+
+template <class Real>
+void setAcross(const Moment<Real>& m, Vector* across) {
+  const Vector gap = rounded(m.nearest.a - m.nearest.b);
+  if (across != nullptr && largest(gap) > 0x1p-500) *across = scaled(1 / largest(gap), gap);
+}
+
+/// Whether the pair certainly does not come within the clearance before `t`: then a plane keeps them farther apart that
+/// the motion goes against.
+bool comesLater(const Pair<double>& pair, double t, Vector* across) {
+  const Moment<double> m = momentAt(pair, t);
+  if (!(m.least > pair.clearance && m.rate > kRateError<double>)) return false;
+  setAcross(m, across);
+  return true;
+}
+
 template <class Real>
 std::optional<Found<Real>> search(const Pair<Real>& pair, Vector* across = nullptr) {
   constexpr Real kNever{Of<Real>::never}, kHalf{0.5};
-  // Of a rate: of two unit vectors and their inner product.
-  constexpr Real kRateError{64 * Of<Real>::unit};
   const Real& clearance = pair.clearance;
   Found<Real> found;
   // The distance is convex in t. So contact fills one interval, which lies between found.lo and `end`.
   Real t{}, end = kNever, step{}, approaching{}, receding = kNever;
+  exact::FeaturePlace place = exact::kAnyPlace;
   for (int i = 0; i < kMostSteps; ++i) {
-    const Moment<Real> m = momentAt(pair, t);
+    const Moment<Real> m = momentAt(pair, t, place);
+    place = m.nearest.place;
     const Real least = std::max(kHalf * pair.tolerance, Real{4} * m.error);
     if (m.most <= clearance) {
       found.hi = t;
-      found.atLo = t > Real{} ? momentAt(pair, found.lo) : m;
+      found.atLo = t > Real{} ? momentAt(pair, found.lo, place) : m;
       return found;
     }
     if (m.least > clearance) {
       // No contact while the plane, which moves at a constant rate, is farther than the clearance.
-      const Real spare = (m.least - clearance) * (Real{1} - Real{16 * Of<Real>::unit}), forward = m.rate + kRateError,
-                 backward = kRateError - m.rate;
+      const Real spare = (m.least - clearance) * (Real{1} - Real{16 * Of<Real>::unit}),
+                 forward = m.rate + kRateError<Real>, backward = kRateError<Real> - m.rate;
       const Real from = backward > Real{} ? t - spare / backward : -kNever;
       const Real to = forward > Real{} ? t + spare / forward : kNever;
       if (from <= found.lo) {
@@ -136,8 +157,7 @@ std::optional<Found<Real>> search(const Pair<Real>& pair, Vector* across = nullp
         return found;
       }
       if (found.lo > pair.distance || found.lo >= end) {
-        const Vector gap = rounded(m.nearest.a - m.nearest.b);
-        if (across != nullptr && largest(gap) > 0x1p-500) *across = scaled(1 / largest(gap), gap);
+        setAcross(m, across);
         return std::nullopt;
       }
       step = least;
@@ -149,7 +169,7 @@ std::optional<Found<Real>> search(const Pair<Real>& pair, Vector* across = nullp
       // Rounding leaves open whether the triangles are within the clearance now. They are nearest to each other between
       // where they still approach and where they move apart.
       found.isRough = found.isRough || m.error > Real{kFine} * clearance || m.most - m.least > Real{kTight} * m.error;
-      const bool isApproaching = m.rate + kRateError > Real{};
+      const bool isApproaching = m.rate + kRateError<Real> > Real{};
       if (isApproaching) approaching = std::max(approaching, t);
       if (!isApproaching) receding = std::min(receding, t);
       const Real from = std::max(found.lo, approaching), to = std::min(end, receding);
@@ -288,7 +308,7 @@ bool stayApart(const exact::Triangle& a, const exact::Triangle& b, const Vector&
 }
 
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
-                                 double clearance, double tolerance, Vector* across) {
+                                 double clearance, double tolerance, double latest, Vector* across) {
   const double distance = motion.wayUntil(motion.end);
   const int exponent = exponentOf(a, b, clearance);
   const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
@@ -303,6 +323,7 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
     if (!std::isinf(out.hi)) out.hi = std::min(out.hi, distance);
     return out;
   };
+  if (comesLater(rough, scale * motion.wayUntil(latest), across)) return std::nullopt;
   const auto found = search(rough, across);
   if (!found) return std::nullopt;
   if (!found->isRough || found->hi - found->lo <= rough.tolerance)

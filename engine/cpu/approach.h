@@ -32,10 +32,10 @@ struct Approach {
 };
 
 /// After how much of its motion, world units, triangle a comes within `clearance` > 0 of b; none if it certainly does
-/// not until the end: then `across` is set along their gap at some time. hi - lo is at most `tolerance`, if rounding
-/// allows.
+/// not, or, it may be, not before t = `latest`: then `across` is set along their gap at some time. hi - lo is at most
+/// `tolerance`, if rounding allows.
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
-                                 double clearance, double tolerance, Vector* across = nullptr);
+                                 double clearance, double tolerance, double latest, Vector* across = nullptr);
 
 /// How exact::blocksWithin decides, as far as double-doubles tell.
 enum class Nearing {

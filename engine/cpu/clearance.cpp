@@ -29,7 +29,7 @@ ClearanceContact::ClearanceContact(const Query& query, const Translation& motion
 
 std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pair, Vector* across) const {
   const Translation& motion = *motion_;
-  auto found = approach(pair.a, pair.b, motion, query_.clearance, tolerance_, across);
+  auto found = approach(pair.a, pair.b, motion, query_.clearance, tolerance_, latest_, across);
   if (!found) return found;
   if (motion.isStep) {
     const auto timeOf = [&](double way, double rounding) {

@@ -17,8 +17,9 @@ template <>
 struct Lanes<float> {
   FourFloats v;
   Lanes() = default;
-  Lanes(float x) : v{x, x, x, x} {}  // NOLINT: in all lanes
-  Lanes(FourFloats x) : v(x) {}      // NOLINT
+  Lanes(float x) : v{x, x, x, x} {}                          // NOLINT: in all lanes
+  Lanes(FourFloats x) : v(x) {}                              // NOLINT
+  Lanes(const float (&x)[4]) : v{x[0], x[1], x[2], x[3]} {}  // NOLINT
   float operator[](int i) const { return v[i]; }
   FourFloats floats() const { return v; }
 
@@ -46,7 +47,8 @@ struct Lanes<double> {
   Lanes() = default;
   Lanes(double x) : low{x, x}, high{x, x} {}  // NOLINT: in all lanes
   Lanes(TwoDoubles x, TwoDoubles y) : low(x), high(y) {}
-  Lanes(FourFloats x) : low{x[0], x[1]}, high{x[2], x[3]} {}  // NOLINT
+  Lanes(const double (&x)[4]) : low{x[0], x[1]}, high{x[2], x[3]} {}  // NOLINT
+  Lanes(FourFloats x) : low{x[0], x[1]}, high{x[2], x[3]} {}          // NOLINT
   double operator[](int i) const { return i < 2 ? low[i] : high[i - 2]; }
   /// Rounded to nearest.
   FourFloats floats() const {

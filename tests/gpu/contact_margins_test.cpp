@@ -154,7 +154,7 @@ class Margins {
     c.clearance = size * magnitude(random_, 10);
     const Translation motion(c.query);
     c.nearing = cpu::approach(placedTriangle(a, c.query.worldFromMesh, c.triangleA),
-                              placedTriangle(b, object.worldFromMesh, c.triangleB), motion, c.clearance, 0);
+                              placedTriangle(b, object.worldFromMesh, c.triangleB), motion, c.clearance, 0, INFINITY);
     cases_.push_back(c);
   }
 

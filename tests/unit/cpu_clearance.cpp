@@ -161,7 +161,7 @@ TEST_CASE("needles that pass by a hair are not certified as within a smaller cle
                            {0x1.3c51124454f07p-1, 0x1.2d32801c4f815p-1, -0x1.0b25d7eda9225p-1},
                            {0x1.182d76eb6f728p-1, 0x1.0ac91a8e403e8p-1, -0x1.d940a4fe60dcap-2}}};
   for (const double clearance : {1e-9, 1e-11, 2e-14}) {
-    const auto found = cpu::approach(a, b, along({1, 0, 0}, 0), clearance, 0);
+    const auto found = cpu::approach(a, b, along({1, 0, 0}, 0), clearance, 0, INFINITY);
     CHECK((!found || std::isinf(found->hi)));
   }
 }
@@ -173,8 +173,8 @@ TEST_CASE("a point that passes through a triangle a billion times the clearance 
                               {0x1.1c2d3e736c3ap+8, 0x1.2530135cfd32p+7, 0x1.ea43ec5adfcep+6},
                               {-0x1.301fbc76cda74p+7, -0x1.32f9bb3d7ec4p+6, -0x1.f495f2b0b3acp+5}}};
   const Vector unit{0x1.5cd94169c7b7bp-1, 0x1.bc15da9e3993dp-6, -0x1.7681f9714dbb4p-1};
-  const auto found =
-      cpu::approach({point, point, point}, face, along(unit, 11.4), 0x1.57c6b1946ff6ep-22, 0x1.018c861aa4df8p-18);
+  const auto found = cpu::approach({point, point, point}, face, along(unit, 11.4), 0x1.57c6b1946ff6ep-22,
+                                   0x1.018c861aa4df8p-18, INFINITY);
   REQUIRE(found);
   // By exact arithmetic, it is that near from 7.30117290387 to 7.3011735...
   CHECK((7.301172 < found->lo && found->lo < 7.30117290388));
@@ -186,7 +186,7 @@ TEST_CASE("a bracket is as narrow as rounding allows though doubles do not tell 
   // are the same number.
   const Vector point{1, -3, 1};
   const exact::Triangle face{{{3, -0.5, 0.5}, {3, -0.5, 1.5}, {2, -0.5, 1.5}}};
-  const auto found = cpu::approach({point, point, point}, face, along({2, 1.5, -0.5}, 10), 1, 0);
+  const auto found = cpu::approach({point, point, point}, face, along({2, 1.5, -0.5}, 10), 1, 0, INFINITY);
   REQUIRE(found);
   CHECK(found->lo <= std::sqrt(6.5));
   CHECK(found->hi >= std::sqrt(6.5));
@@ -198,7 +198,7 @@ TEST_CASE("a clearance works at every scale") {
     const exact::Triangle a{{{0, 0, 0}, {0, scale, 0}, {0, 0, scale}}};
     exact::Triangle b = a;
     for (Vector& corner : b) corner[0] = 4 * scale;
-    const auto found = cpu::approach(a, b, along({1, 0, 0}, 10 * scale), scale, 1e-6 * scale);
+    const auto found = cpu::approach(a, b, along({1, 0, 0}, 10 * scale), scale, 1e-6 * scale, INFINITY);
     REQUIRE(found);
     CHECK(found->lo / scale == Approx(3).epsilon(1e-5));
     CHECK(found->hi / scale == Approx(3).epsilon(1e-5));
@@ -263,7 +263,7 @@ TEST_CASE("slivers up to 1e13 times as long as wide are decided, though doubles 
       Query query{.direction = random.inBall(), .distance = random.chance(0.5) ? 10 : 10 * stretch};
       const Translation motion(query);
       const double clearance = std::exp(random.uniform(-7, 1)), tolerance = 1e-6;
-      const auto found = cpu::approach(a, b, motion, clearance, tolerance);
+      const auto found = cpu::approach(a, b, motion, clearance, tolerance, INFINITY);
       const distances::Point<Quad> unit = distances::pointOf<Quad>(motion.direction).normalized();
       const auto placedA = distances::pointsOf<Quad>(a), placedB = distances::pointsOf<Quad>(b);
       const Quad room = 1e-24 * stretch;

@@ -62,6 +62,7 @@ float clearanceOf(uint search) { return 0.0; }
 #include "node_pair.glsl"
 #include "triangle_pair.glsl"
 #ifdef RADAR_CLEARANCES
+#include "reach.glsl"
 #include "within_clearance.glsl"
 #else
 const uint kClearanceIterations = 0;

@@ -118,7 +118,13 @@ void descend() {
       if (tests) {
         const uint ia = (current.x & kLinkItem) + (intoA ? child : 0), ib = current.y + (intoA ? 0 : child);
         const Node a = nodeAt(ia), b = nodeAt(ib);
-        const Approach approach = approachOf(meshes, a, b, limit);
+        Approach approach = approachOf(meshes, a, b, limit);
+#ifdef RADAR_CLEARANCES
+        if (approach.gap < kMiss && clearanceOf(search) > 0.0) {
+          const float from = reachedFrom(search, object, a, b, clearanceOf(search), meshes.farthest, limit);
+          approach.gap = from > limit ? kMiss : max(approach.gap, from);
+        }
+#endif
         linkA = a.link;
         linkB = b.link;
         gap = approach.gap;

@@ -14,6 +14,7 @@ float clearance = 0.0;
 float clearanceOf(uint sensor) { return clearance; }
 #include "shaders/contact/node_pair.glsl"
 #include "shaders/contact/triangle_pair.glsl"
+#include "shaders/contact/reach.glsl"
 #include "shaders/contact/within_clearance.glsl"
 
 layout(local_size_x = 64) in;
@@ -48,7 +49,9 @@ void main() {
   const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
   found.pairGap = m.isOver ? kMiss : max(min(firstOf(m), m.unknown), 0.0);
   clearance = t.clearance;
-  found.gapNear = approachOf(meshPairOf(t.sensor, t.object), nodeA, nodeB, t.nearLimit).gap;
+  const MeshPair apart = meshPairOf(t.sensor, t.object);
+  found.gapNear = max(approachOf(apart, nodeA, nodeB, t.nearLimit).gap,
+                      reachedFrom(t.sensor, t.object, nodeA, nodeB, clearance, apart.farthest, t.nearLimit));
   found.nearFrom = meetsFrom(a, b, clearance, t.nearLimit);
   const WithinClearance within = withinClearance(a, b, clearance, t.limit);
   found.nearLow = within.low;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "contact/submitter.h"
+#include "radar/cpu_sweeper.h"
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
@@ -13,6 +14,7 @@
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
 #include "workloads/interlocking.h"
+#include "workloads/same_answer.h"
 #include "workloads/shapes.h"
 
 namespace radar {
@@ -269,4 +271,20 @@ TEST_CASE("queries that floats cannot represent are answered on the CPU") {
   CHECK(answers.results[0].status == Status::hit);
   CHECK(answers.results[0].t == Approx(2 * size));
   CHECK(answers.stats.cpuQueries == (size == 1 ? 0 : 1));
+}
+
+TEST_CASE("a clearance as large as the shapes, or larger, opens few pairs of triangles on the device") {
+  Scene scene;
+  const MeshId shape = add(scene, tools::makeTorus(1, 0.4, 60, 30));
+  scene.addObject({shape, at(0, 0, 0)});
+  Query query{.mesh = shape, .worldFromMesh = at(-30, -30.1, -30.2), .direction = {1, 1, 1}, .distance = 90};
+  query.clearance = GENERATE(0.1, 3.0, 12.0);
+  DeviceSearch search(scene);
+  const Answers answers = search.run({&query, 1});
+  CAPTURE(query.clearance, answers.stats.pairs);
+  CHECK(answers.results[0].status == Status::hit);
+  CHECK(answers.stats.cpuQueries == 0);
+  // Of 13 million.
+  CHECK(answers.stats.pairs < 5'000);
+  CHECK(differenceOf(answers.results, CpuSweeper(scene, 1).run({&query, 1}).results, tools::sameAnswer) == "");
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <tuple>
 #include <utility>
 
 #include "exact/blocking.h"
@@ -21,16 +20,56 @@ constexpr double kLongest = 1e38;
 // Searches that take as long to state as a thread to wake.
 constexpr size_t kWorthThread = 1024;
 
-void stateDistance(gpu::StatedSearch& out, const Query& query, const Translation& motion) {
-  const double way = motion.wayUntil(motion.end);
-  const bool isUsual = way >= 0x1p-1000 && way <= 0x1p1000;
-  out.exponent = isUsual ? exponentOf(way) : way > 0 ? std::ilogb(way) : 0;
-  const double mantissa = isUsual ? powerOfTwo(-out.exponent) * way : std::ldexp(way, -out.exponent);
+// encode.comp finds it.
+constexpr double kByDevice = -1;
+
+// How a search's sensor moves past what it may meet.
+struct Way {
+  Vector direction;  ///< scaled as Translation's of a sweep
+  double end;        ///< t
+  double length;     ///< until then, world units, rounded up
+  bool isStep = false;
+  double perParameter = kByDevice;  ///< t per `direction`
+  Vector drift{};                   ///< step: the object's displacement
+};
+
+Way wayOf(const Query& query, const Scene::Impl& scene, ObjectId object) {
+  if (!isStep(query, scene)) return {scaledDirection(query.direction), query.distance, query.distance};
+  const Translation motion = Course(query, scene).past(object);
+  const Vector direction = scaledDirection(motion.direction);
+  return {direction,   motion.end, motion.wayUntil(motion.end), true, largest(direction) / largest(motion.direction),
+          motion.drift};
+}
+
+// Every member, each once, since `to` may be slow memory.
+void stateSweep(gpu::Sweep& to, const Query& query, const Way& way, uint32_t result, const Scene::Impl& scene) {
+  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), to.pose);
+  std::copy(way.direction.begin(), way.direction.end(), to.direction);
+  to.directionLength = kByDevice;
+  to.distance = way.end;
+  to.anyHit = query.anyHit ? 1 : 0;
+  to.result = result;
+  to.scale = to.start = 0;
+  const bool ignores = query.ignoreLeaving;
+  to.ignoreLeaving = ignores ? 1 : 0;
+  to.isMirrored = ignores && exact::isMirroring(query.worldFromMesh) ? 1 : 0;
+  to.cpuDecides = query.clearance > 0 ? 1 : 0;
+  to.stepPerUnit = 0;
+  to.slack = ignores ? query.slack.value_or(-1) : 0;
+  to.magnitude = ignores ? placedMagnitude(scene.meshes[query.mesh].farthest, query.worldFromMesh) : 0;
+  to.perParameter = way.perParameter;
+  std::copy(way.drift.begin(), way.drift.end(), to.drift);
+}
+
+void stateDistance(gpu::StatedSearch& out, const Query& query, const Way& way) {
+  const bool isUsual = way.length >= 0x1p-1000 && way.length <= 0x1p1000;
+  out.exponent = isUsual ? exponentOf(way.length) : way.length > 0 ? std::ilogb(way.length) : 0;
+  const double mantissa = isUsual ? powerOfTwo(-out.exponent) * way.length : std::ldexp(way.length, -out.exponent);
   out.way = roundUp(mantissa);
   // A step's way has been rounded up.
-  out.certain = motion.isStep ? roundDown((1 - 0x1p-48) * mantissa) : out.way;
+  out.certain = way.isStep ? roundDown((1 - 0x1p-48) * mantissa) : out.way;
   out.stopBefore = query.anyHit ? std::min(out.certain, roundDown(mantissa)) : -1;
-  if (motion.isStep) out.perWay = way > 0 ? roundDown((1 - 0x1p-20) / mantissa) : -1;
+  if (way.isStep) out.perWay = way.length > 0 ? roundDown((1 - 0x1p-20) / mantissa) : -1;
 }
 
 }  // namespace
@@ -40,60 +79,41 @@ const SearchGroup& groupOf(std::span<const SearchGroup> groups, uint32_t search)
                                          [&](const SearchGroup& group) { return group.first <= search; }));
 }
 
-gpu::Sweep sweepOf(const Query& query, const Translation& motion, uint32_t result) {
-  // That of a sweep is scaled already.
-  const Vector direction = motion.isStep ? scaledDirection(motion.direction) : motion.direction;
+gpu::Sweep sweepOf(const Query& query, const Translation& motion, const Scene::Impl& scene) {
   gpu::Sweep sweep{};
-  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), sweep.pose);
-  std::copy(direction.begin(), direction.end(), sweep.direction);
-  sweep.directionLength = motion.isStep ? exact::length(direction) : motion.length;
-  sweep.distance = motion.end;
-  sweep.perParameter = sweep.directionLength;
-  if (motion.isStep) {
-    sweep.perParameter = largest(direction) / largest(motion.direction);
-    std::copy(motion.drift.begin(), motion.drift.end(), sweep.drift);
-  }
-  sweep.anyHit = query.anyHit ? 1 : 0;
-  sweep.result = result;
+  stateSweep(sweep, query, {.direction = motion.direction, .end = motion.end, .length = motion.end}, 0, scene);
+  sweep.directionLength = sweep.perParameter = motion.length;
   return sweep;
 }
 
 namespace {
 
-// Without excluded objects.
+using Excluded = std::pair<uint32_t, uint32_t>;  // where they begin and end
+
 Planned stateSearch(const Query& query, uint32_t result, const Scene::Impl& scene, ObjectId object,
-                    gpu::StatedSearch& search, gpu::Sweep& sweep) {
-  const Translation motion = Course(query, scene).past(object);
-  sweep = sweepOf(query, motion, result);
-  const Vector direction{sweep.direction[0], sweep.direction[1], sweep.direction[2]};
-  if (const double size = largest(direction); !(size >= 1 && size < 2)) return Planned::outOfRange;
-  search = {.mesh = query.mesh, .mask = query.mask};
-  search.start = object == kNone ? gpu::kWholeTree : gpu::kLinkLeaf | object;
-  const std::array<Vector, 3> axes = axesAlongUnit(motion.unit);
-  for (int k = 0; k < 3; ++k) {
-    search.across[k] = static_cast<float>(axes[0][k]);
-    search.upwards[k] = static_cast<float>(axes[1][k]);
-    search.direction[k] = static_cast<float>(axes[2][k]);
-  }
-  stateDistance(search, query, motion);
-  search.clearance = roundUp(std::min(query.clearance, kLongest));
-  search.tolerance = roundUp(std::min(query.tolerance.value_or(kLongest), kLongest));
-  sweep.cpuDecides = query.clearance > 0 ? 1 : 0;
-  if (!query.ignoreLeaving) return Planned::added;
-  if (query.slack) search.slack = roundUp(std::min(2 * *query.slack, kLongest));
+                    const Excluded& excluded, gpu::StatedSearch& search, gpu::Sweep& sweep) {
+  const Way way = wayOf(query, scene, object);
+  stateSweep(sweep, query, way, result, scene);  // out of range, too: the answer says so
+  if (const double size = largest(way.direction); !(size >= 1 && size < 2)) return Planned::outOfRange;
+  gpu::StatedSearch stated{.mesh = query.mesh,
+                           .mask = query.mask,
+                           .firstExcluded = excluded.first,
+                           .endExcluded = excluded.second,
+                           .start = object == kNone ? gpu::kWholeTree : gpu::kLinkLeaf | object};
+  stateDistance(stated, query, way);
+  stated.clearance = roundUp(std::min(query.clearance, kLongest));
+  stated.tolerance = roundUp(std::min(query.tolerance.value_or(kLongest), kLongest));
   // A contact that is certain wherever the slack moves a corner blocks. Twice the slack, since it may also tilt planes:
   // then the same holds for triangles in one plane (docs/exact.md, "Pairs that block"). By default the slack is at most
   // a sixteenth of either placement's error.
-  if (!query.slack) search.slackShare = 0.125f;
-  sweep.ignoreLeaving = 1;
-  sweep.isMirrored = exact::isMirroring(query.worldFromMesh) ? 1 : 0;
-  sweep.slack = query.slack.value_or(-1);
-  sweep.magnitude = placedMagnitude(scene.meshes[query.mesh].farthest, query.worldFromMesh);
+  if (query.ignoreLeaving && query.slack) stated.slack = roundUp(std::min(2 * *query.slack, kLongest));
+  if (query.ignoreLeaving && !query.slack) stated.slackShare = 0.125f;
+  search = stated;
   return Planned::added;
 }
 
-// In ascending order. Returns where they begin and end.
-std::pair<uint32_t, uint32_t> addExcluded(std::vector<uint32_t>& to, const Query& query, ObjectId object) {
+// In ascending order.
+Excluded addExcluded(std::vector<uint32_t>& to, const Query& query, ObjectId object) {
   const size_t first = to.size();
   // Who is searched alone takes part.
   if (object == kNone) to.insert(to.end(), query.exclude.begin(), query.exclude.end());
@@ -109,9 +129,12 @@ Planned SearchPlan::add(const Query& query, uint32_t result, const Scene::Impl& 
   if (tree.nodes().empty()) return Planned::clear;
   gpu::StatedSearch search{};
   gpu::Sweep sweep{};
-  const Planned planned = stateSearch(query, result, scene, object, search, sweep);
+  const Planned planned =
+      stateSearch(query, result, scene, object, addExcluded(excluded, query, object), search, sweep);
   if (planned != Planned::added) return planned;
-  std::tie(search.firstExcluded, search.endExcluded) = addExcluded(excluded, query, object);
+  // No CPU decides what encode.comp may leave to it.
+  sweep.directionLength = exact::length({sweep.direction[0], sweep.direction[1], sweep.direction[2]});
+  if (sweep.perParameter < 0) sweep.perParameter = sweep.directionLength;
   stated.push_back(search);
   sweeps.push_back(sweep);
   return Planned::added;
@@ -138,12 +161,6 @@ SearchSource SearchPlan::source() const {
             std::ranges::copy(sweeps, sweepsTo);
           }};
 }
-
-SearchNeeds::SearchNeeds(const Query& query, const Scene::Impl& scene)
-    : route(routeOf(query, scene, true)),
-      ignoresLeaving(query.ignoreLeaving),
-      hasClearance(query.clearance > 0),
-      excludes(!query.exclude.empty()) {}
 
 void SearchList::clear() {
   searches_.clear();
@@ -176,16 +193,10 @@ void SearchList::write(gpu::StatedSearch* stated, gpu::Sweep* sweeps) const {
   parallelFor(count(), kWorthThread, of_.threads, [&](unsigned, size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
       const Listed& listed = searches_[i];
-      gpu::StatedSearch search;
-      gpu::Sweep sweep;
-      if (stateSearch(of_.queries[listed.query], static_cast<uint32_t>(i), *of_.scene, listed.object, search, sweep) !=
-          Planned::added) {
-        search = {.start = gpu::kNobody, .flags = gpu::kSearchOutOfRange};
-      }
-      search.firstExcluded = listed.firstExcluded;
-      search.endExcluded = listed.endExcluded;
-      stated[i] = search;
-      sweeps[i] = sweep;
+      const Planned planned =
+          stateSearch(of_.queries[listed.query], static_cast<uint32_t>(i), *of_.scene, listed.object,
+                      {listed.firstExcluded, listed.endExcluded}, stated[i], sweeps[i]);
+      if (planned != Planned::added) stated[i] = {.start = gpu::kNobody, .flags = gpu::kSearchOutOfRange};
     }
   });
 }

@@ -56,14 +56,6 @@ struct SearchPlan {
   SearchSource source() const;
 };
 
-/// What listing a query's searches takes, so that whoever lists them need not read the query.
-struct SearchNeeds {
-  Route route = Route::cpu;
-  bool ignoresLeaving = false, hasClearance = false, excludes = false;
-  SearchNeeds() = default;
-  SearchNeeds(const Query& query, const Scene::Impl& scene);
-};
-
 /// What a submission searches: stated only when that is staged, so that each search is written once, by all threads.
 /// Answers get the indices of their searches; those of searches that floats cannot hold say so.
 class SearchList {
@@ -99,8 +91,7 @@ class SearchList {
   bool ignoresLeaving_ = false, hasClearances_ = false;
 };
 
-/// A query's search in double precision, but for what depends on a scale. `motion`: the query's. `result`: the index of
-/// its answer.
-gpu::Sweep sweepOf(const Query& query, const Translation& motion, uint32_t result);
+/// A sweep's search in double precision, but for what depends on a scale. `motion`: the query's.
+gpu::Sweep sweepOf(const Query& query, const Translation& motion, const Scene::Impl& scene);
 
 }  // namespace radar

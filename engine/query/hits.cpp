@@ -29,19 +29,23 @@ bool isOrdered(const Result& p, const Result& q) {
 
 }  // namespace
 
-void clearFor(std::span<const Query> queries, unsigned threads, Answers& answers) {
-  const size_t count = queries.size(), before = std::min(answers.results.size(), count);
+void makeRoom(size_t count, bool lists, Answers& answers) {
   answers.results.resize(count);
-  parallelFor(before, kWorthThread, threads, [&](unsigned, size_t first, size_t last) {
-    std::fill(answers.results.begin() + ptrdiff_t(first), answers.results.begin() + ptrdiff_t(last), Result());
-  });
-  answers.lists.resize(std::ranges::any_of(queries, hasLists) ? count : 0);
+  answers.lists.resize(lists ? count : 0);
   for (Listed& listed : answers.lists) {
     listed.hits.clear();
     listed.overlapping.clear();
   }
   answers.reasons.clear();
   answers.stats = {};
+}
+
+void clearFor(std::span<const Query> queries, unsigned threads, Answers& answers) {
+  const size_t before = std::min(answers.results.size(), queries.size());
+  makeRoom(queries.size(), std::ranges::any_of(queries, hasLists), answers);
+  parallelFor(before, kWorthThread, threads, [&](unsigned, size_t first, size_t last) {
+    std::fill(answers.results.begin() + ptrdiff_t(first), answers.results.begin() + ptrdiff_t(last), Result());
+  });
 }
 
 Answers unanswered(std::span<const Query> queries) {

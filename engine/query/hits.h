@@ -14,6 +14,9 @@ inline bool hasLists(const Query& query) {
   return query.hits > 1 || query.skipOverlapping;
 }
 
+/// Makes room for the answers to `count` queries, and for their lists if they have some, in the memory that `answers`
+/// has. Results that were there stay.
+void makeRoom(size_t count, bool lists, Answers& answers);
 /// Makes `answers` invalid ones to all queries, with room for their lists, in the memory that it has.
 void clearFor(std::span<const Query> queries, unsigned threads, Answers& answers);
 Answers unanswered(std::span<const Query> queries);

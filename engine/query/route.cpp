@@ -2,6 +2,8 @@
 
 #include <atomic>
 
+#include "math/vector.h"
+#include "query/hits.h"
 #include "scene/parallel.h"
 
 namespace radar {
@@ -10,6 +12,18 @@ namespace {
 
 // Queries that take as long to validate as a thread to wake.
 constexpr size_t kWorthThread = 4096;
+
+// Whether a query is plain (SearchNeeds) and certainly valid, as most are.
+bool isPlain(const Query& query, const Scene& scene) {
+  const Scene::Impl& impl = scene.impl();
+  const bool hasOptions = query.turn || query.motion || impl.moving > 0 || !query.exclude.empty() ||
+                          query.ignoreLeaving || query.clearance != 0 || query.slack || query.tolerance ||
+                          hasLists(query) || query.hits != 1 || query.resolution > kMaxResolution;
+  if (hasOptions || !scene.hasMesh(query.mesh)) return false;
+  const double size = norm1(query.direction);
+  const bool isUsual = size >= 0x1p-1000 && size <= 0x1p1000 && query.distance >= 0 && query.distance <= 0x1p1000;
+  return isUsual && isSurelyValid(query.worldFromMesh);
+}
 
 }  // namespace
 
@@ -30,7 +44,17 @@ Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise) {
   return query.hits > 1 || scene.moving > 0 ? Route::searchEach : Route::oneSearch;
 }
 
-void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode, bool areRecorded, unsigned threads) {
+SearchNeeds::SearchNeeds(const Query& query, const Scene::Impl& scene)
+    : route(routeOf(query, scene, true)),
+      isPlain(route == Route::oneSearch && query.clearance == 0 && !query.ignoreLeaving && query.exclude.empty() &&
+              !hasLists(query)),
+      ignoresLeaving(query.ignoreLeaving),
+      hasClearance(query.clearance > 0),
+      excludes(!query.exclude.empty()),
+      lists(hasLists(query)) {}
+
+void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode, bool areRecorded, unsigned threads,
+                  std::span<SearchNeeds> needs) {
   const auto problemOf = [&](const Query& query) {
     std::string wrong = validate(query, scene, mode);
     const char* what = wrong.empty() && areRecorded ? onlyForCpu(query, scene.impl(), false) : nullptr;
@@ -38,9 +62,16 @@ void requireValid(std::span<const Query> queries, const Scene& scene, Mode mode,
     return wrong;
   };
   std::atomic<size_t> first = queries.size();  // of those that are wrong
+  SearchNeeds plain;
+  plain.route = Route::oneSearch;
+  plain.isPlain = true;
   const auto check = [&](size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
-      if (problemOf(queries[i]).empty()) continue;
+      const bool isKnown = isPlain(queries[i], scene);
+      if (isKnown || problemOf(queries[i]).empty()) {
+        if (!needs.empty()) needs[i] = isKnown ? plain : SearchNeeds(queries[i], scene.impl());
+        continue;
+      }
       for (size_t least = first; i < least && !first.compare_exchange_weak(least, i);) {
       }
       return;

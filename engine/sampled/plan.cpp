@@ -162,7 +162,7 @@ void Planner::selectObjects() {
 // The proposed pairs are solved about the sensor's size, up to D.
 void Planner::setSweep() {
   const Translation motion(query_);
-  plan_.sweep = sweepOf(query_, motion, 0);
+  plan_.sweep = sweepOf(query_, motion, scene_);
   const int exponent = std::ilogb(std::max(size_, margin_));
   plan_.sweep.scale = static_cast<float>(std::ldexp(1.0, -exponent));
   // No less than what shaders might flush to 0.

@@ -12,9 +12,10 @@ namespace {
 // Vertices that poses up to this place do not overflow, nor do differences of such vertices.
 constexpr double kMostPose = 0x1p800;
 
-// Whether a pose certainly passes the test of validate(): columns of length 1 make rows of at most
-// sqrt(3), so the scaled determinant loses at most a factor of 5.2.
-bool isSurelyInvertible(const Transform& pose) {
+}  // namespace
+
+// Columns of length 1 make rows of at most sqrt(3), so the scaled determinant loses at most a factor of 5.2.
+bool isSurelyValid(const Transform& pose) {
   double squares = 1;
   for (int k = 0; k < 3; ++k) {
     squares *= pose.m[k] * pose.m[k] + pose.m[4 + k] * pose.m[4 + k] + pose.m[8 + k] * pose.m[8 + k];
@@ -24,11 +25,9 @@ bool isSurelyInvertible(const Transform& pose) {
   return squares > 1e-250 && squares < 1e250 && volume * volume > 1e-20 * squares && position <= kMostPose;
 }
 
-}  // namespace
-
 std::string validate(const Transform& pose) {
   const FloatEnvironment floats;
-  if (isSurelyInvertible(pose)) return {};
+  if (isSurelyValid(pose)) return {};
   for (double value : pose.m) {
     if (!(std::abs(value) <= kMostPose)) {
       return "expected 12 finite numbers of at most 2^800, got " + textOf(value);

@@ -90,6 +90,8 @@ inline bool isStep(const Query& query, const Scene::Impl& scene) {
 
 /// Components of displacements up to this are valid: their sums and lengths do not overflow.
 inline constexpr double kMostMotion = 0x1p1000;
+/// Whether a pose certainly passes the test of validate(), as most do.
+bool isSurelyValid(const Transform& pose);
 /// Empty, or what is wrong with a displacement during a step.
 std::string validateMotion(const std::array<double, 3>& motion);
 

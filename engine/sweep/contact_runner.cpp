@@ -54,7 +54,20 @@ bool ContactRunner::isOnCpu() const {
   return options_.cpuBatch == kNone && device_.runsOnCpu();
 }
 
+std::span<SearchNeeds> ContactRunner::needsOf(size_t queries) {
+  needs_.resize(queries);
+  return needs_;
+}
+
 void ContactRunner::begin(Flight& flight) {
+  if (flight.needs.empty()) {
+    flight.needs = needsOf(flight.queries.size());
+    parallelFor(flight.queries.size(), kWorthThread, options_.cpuThreads, [&](unsigned, size_t from, size_t to) {
+      for (size_t i = from; i < to; ++i) needs_[i] = SearchNeeds(flight.queries[i], scene_.impl());
+    });
+  }
+  open_.assign(flight.queries.size(), 1);
+  flight.open = open_;
   all_.resize(flight.queries.size());
   std::iota(all_.begin(), all_.end(), size_t{0});
   flight.answers.stats.lost = lost_;
@@ -69,12 +82,17 @@ void ContactRunner::finish(Flight& flight) {
     collect(flight);
   }
   answerLeft(flight);
+  flight.open = {};
 }
 
 void ContactRunner::abandon(Flight& flight) noexcept {
   planned_.clear();
   flight.left.clear();
   flight.again.clear();
+  for (size_t i = 0; i < flight.open.size(); ++i) {
+    if (flight.open[i] != 0) flight.answers.results[i] = Result();
+  }
+  flight.open = {};
   if (submitted_.empty()) return;
   submitted_.clear();
   try {
@@ -89,26 +107,20 @@ void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
     return;
   }
   const Clock::time_point begun = Clock::now();
-  const Scene::Impl& scene = scene_.impl();
-  const ObjectTree& tree = scene.objectTree();
+  const ObjectTree& tree = scene_.impl().objectTree();
   flight.addCpuTime("select", msSince(begun));
-  const Clock::time_point checking = Clock::now();
-  needs_.resize(which.size());
-  parallelFor(which.size(), kWorthThread, options_.cpuThreads, [&](unsigned, size_t from, size_t to) {
-    for (size_t i = from; i < to; ++i) needs_[i] = SearchNeeds(flight.queries[which[i]], scene);
-  });
-  flight.addCpuTime("check", msSince(checking));
   flight.encoding = Clock::now();
   planned_.reserve(std::min(which.size(), mostSearches_));
-  for (size_t i = 0; i < which.size(); ++i) {
+  for (const size_t query : which) {
     throwIfStopped(flight.stop);
-    if (!planQuery(flight, which[i], needs_[i], tree)) flight.left.push_back(which[i]);
+    if (!planQuery(flight, query, tree)) flight.left.push_back(query);
   }
   submit(flight);
 }
 
-bool ContactRunner::planQuery(Flight& flight, size_t query, const SearchNeeds& needs, const ObjectTree& tree) {
+bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tree) {
   static constexpr std::array kAll{kNone};
+  const SearchNeeds& needs = flight.needs[query];
   if (needs.route == Route::cpu || !tree.inRange()) return false;
   std::vector<ObjectId> inReachOfIt;
   std::span<const ObjectId> objects = kAll;
@@ -119,6 +131,7 @@ bool ContactRunner::planQuery(Flight& flight, size_t query, const SearchNeeds& n
   if (objects.size() > mostSearches_) return false;
   if (objects.empty() || tree.nodes().empty()) {
     flight.answers.results[query] = clearAnswer();
+    flight.open[query] = 0;
     return true;
   }
   if (planned_.count() + objects.size() > mostSearches_) submit(flight);
@@ -227,10 +240,19 @@ void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span
 }
 
 bool ContactRunner::answerGroup(Flight& flight, const SearchGroup& group, std::span<const Result> searches) {
-  std::vector<Result> none;
   Answers& answers = flight.answers;
-  return answerFrom(searches, flight.queries[group.query], scene_.impl(), answers.results[group.query],
-                    answers.lists.empty() ? none : answers.lists[group.query].hits);
+  Result& answer = answers.results[group.query];
+  bool isAnswered = false;
+  if (flight.needs[group.query].isPlain) {
+    isAnswered = searches[0].flags == 0;
+    if (isAnswered) answer = searches[0];
+  } else {
+    std::vector<Result> none;
+    isAnswered = answerFrom(searches, flight.queries[group.query], scene_.impl(), answer,
+                            answers.lists.empty() ? none : answers.lists[group.query].hits);
+  }
+  if (isAnswered) flight.open[group.query] = 0;
+  return isAnswered;
 }
 
 void ContactRunner::answerLeft(Flight& flight) {
@@ -239,6 +261,10 @@ void ContactRunner::answerLeft(Flight& flight) {
   std::sort(left.begin(), left.end());
   const Clock::time_point start = Clock::now();
   Answers& answers = flight.answers;
+  for (const size_t i : left) {
+    answers.results[i] = Result();
+    flight.open[i] = 0;
+  }
   const size_t first = left.front(), count = left.size();
   const uint64_t before = cpu_.pairs();
   if (left.back() - first + 1 == count) {  // without gaps

@@ -16,6 +16,8 @@ class ContactRunner {
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
   bool isOnCpu() const;
+  /// Room for what is known of a batch, which lasts until it is answered.
+  std::span<SearchNeeds> needsOf(size_t queries);
   /// Plans and submits all queries; on return the last submission may still be running. As finish(), throws Cancelled
   /// soon after the batch's stop is requested; then call abandon().
   void begin(Flight& flight);
@@ -27,7 +29,7 @@ class ContactRunner {
  private:
   void plan(Flight& flight, std::span<const size_t> which);
   /// Lists the searches of a query; returns false, and lists none, if the CPU has to answer it.
-  bool planQuery(Flight& flight, size_t query, const SearchNeeds& needs, const ObjectTree& tree);
+  bool planQuery(Flight& flight, size_t query, const ObjectTree& tree);
   void submit(Flight& flight);
   void collect(Flight& flight);
   /// Waits for the last submission, whose searches are `groups`, and counts what it took; nothing if that fails.
@@ -51,7 +53,8 @@ class ContactRunner {
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   // Of one batch at a time; their memory is used again.
   std::vector<size_t> all_;
-  std::vector<SearchNeeds> needs_;             ///< of the queries to plan
+  std::vector<SearchNeeds> needs_;
+  std::vector<char> open_;                     ///< Flight::open
   std::vector<SearchGroup> submitted_, last_;  ///< searches with the device, and those to decode
   SearchList planned_;                         ///< for the next submission
   cpu::Search cpu_;

@@ -1,5 +1,6 @@
 #include "sweep/flight.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "gpu/api.h"
@@ -8,13 +9,24 @@
 
 namespace radar {
 
-Flight::Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted, Answers memory, unsigned threads)
+Flight::Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted, Answers memory)
     : queries(asked),
       answers(std::move(memory)),
       deviceDone(Clock::now()),
       measures(timestamps),
       stop(std::move(wanted)) {
-  clearFor(asked, threads, answers);
+  clearFor(asked, 1, answers);
+}
+
+Flight::Flight(std::span<const Query> asked, std::span<const SearchNeeds> known, bool timestamps,
+               std::stop_token wanted, Answers memory)
+    : queries(asked),
+      answers(std::move(memory)),
+      deviceDone(Clock::now()),
+      measures(timestamps),
+      stop(std::move(wanted)),
+      needs(known) {
+  makeRoom(asked.size(), std::ranges::any_of(known, &SearchNeeds::lists), answers);
 }
 
 void Flight::fail(size_t query, const Error& error) {

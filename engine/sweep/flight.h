@@ -21,9 +21,11 @@ inline double msSince(Clock::time_point start) {
 
 struct Flight {
   /// `asked` stays in place until the batch is answered. `timestamps`: as SweeperOptions::timestamps. `wanted`: until
-  /// this is requested to stop. `memory`: to be used again, cleared on `threads` threads.
-  Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted = {}, Answers memory = {},
-         unsigned threads = 1);
+  /// this is requested to stop. `memory`: to be used again.
+  Flight(std::span<const Query> asked, bool timestamps, std::stop_token wanted = {}, Answers memory = {});
+  /// The same of mode contact, with what is known of the queries.
+  Flight(std::span<const Query> asked, std::span<const SearchNeeds> known, bool timestamps, std::stop_token wanted,
+         Answers memory);
 
   std::span<const Query> queries;
   Answers answers;
@@ -33,6 +35,8 @@ struct Flight {
   std::stop_token stop;          ///< once requested, runners throw Cancelled
 
   // Mode contact.
+  std::span<const SearchNeeds> needs;         ///< of the queries; none until they are looked at
+  std::span<char> open;                       ///< 1 where a query's result may be an earlier batch's
   uint32_t cpuBatch = 0;                      ///< fewer queries at once than this are for the CPU
   std::optional<BatchRouter::Choice> choice;  ///< that a router made
   Clock::time_point begun;                    ///< when it did

@@ -192,9 +192,13 @@ void Sweeper::run(std::span<const Query> queries, Answers& answers, Mode mode, c
   const FloatEnvironment floats;
   const Clock::time_point begun = Clock::now();
   if (mode == Mode::sampled) impl_->device.requireSampled("run()");
-  requireValid(queries, impl_->scene, mode, false, impl_->options.cpuThreads);
   const SweeperOptions& options = impl_->options;
-  Flight flight(queries, options.timestamps, stop, std::move(answers), options.cpuThreads);
+  const bool isContact = mode == Mode::contact;
+  const std::span<SearchNeeds> needs =
+      isContact ? impl_->contactRunner.needsOf(queries.size()) : std::span<SearchNeeds>();
+  requireValid(queries, impl_->scene, mode, false, options.cpuThreads, needs);
+  Flight flight = isContact ? Flight(queries, needs, options.timestamps, stop, std::move(answers))
+                            : Flight(queries, options.timestamps, stop, std::move(answers));
   flight.addCpuTime("check", msSince(begun));
   impl_->begin(flight, mode);
   impl_->finish(flight);

@@ -1,6 +1,7 @@
 // Makes of stated searches what the search reads, one invocation per search: scales them, and places their sensors with room for
 // every rounding (docs/method.md, "Placement on the device"). Only the device knows where a host has put vertices and objects.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_null_initializer : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -9,6 +10,7 @@
 #include "shared/transform.glsl"
 #include "shared/placement.glsl"
 #include "shared/workgroup.glsl"
+#include "frame.glsl"
 #ifndef RADAR_NO_DOUBLES
 #include "magnitude.glsl"
 #endif
@@ -37,6 +39,8 @@ const int kLeastExponent = -100;
 const float kLeastShare = 3.64e-12;
 // Clearances below this share of the scene's extent, 2^-40, are left to the CPU, whose doubles may be unable to tell them from 0.
 const float kLeastClearance = 9.2e-13;
+// Of the axes' components, beyond their rounding: 2^-25.
+const float kAxisError = 3e-8;
 
 // Whether floats hold the placed mesh's coordinates, and their terms.
 bool holdsTerms(Transform t, MeshRecord mesh) {
@@ -61,6 +65,15 @@ float farthestFrom(vec3 centre) {
 float scaledDistance(float mantissa, int exponent) {
   if (mantissa <= 0.0) return mantissa;
   return exponent < kLeastExponent ? -1.0 : exponent > 42 ? kMostDistance : min(mantissa * twoTo(exponent), kMostDistance);
+}
+
+uvec2[3] directionOf(uint i) {
+#ifdef RADAR_NO_DOUBLES
+  return sweeps[i].direction;
+#else
+  return uvec2[3](unpackDouble2x32(sweeps[i].direction[0]), unpackDouble2x32(sweeps[i].direction[1]),
+                  unpackDouble2x32(sweeps[i].direction[2]));
+#endif
 }
 
 // Returns SearchState::flags; if they are 0, writes the sensor. `hi`: SearchState::hi.
@@ -92,18 +105,19 @@ uint encode(uint i, StatedSearch s, out uint hi) {
   if (s.clearance > 0.0 && s.clearance < kLeastClearance * (2.0 * sensor.unscale + farthest)) return kSearchOutOfRange;
   const float side = 2.0 * max(box.halfExtent.x, max(box.halfExtent.y, box.halfExtent.z));
   const float tolerance = min(s.tolerance, 1.00001e-6 * max(side, s.clearance));
-  sensor.across = s.across;
+  const vec3[3] axes = axesAlong(directionOf(i));
+  sensor.across = axes[0];
   sensor.clearance = s.clearance * sensor.scale;
-  sensor.upwards = s.upwards;
+  sensor.upwards = axes[1];
   sensor.slackShare = s.slackShare;
-  sensor.along = sensor.direction = s.direction;
+  sensor.along = sensor.direction = axes[2];
   sensor.tolerance = tolerance * sensor.scale;
   sensor.centre = box.centre;
   // 2^-44 of what is placed far away.
   const vec3 halfExtent = 1.000001 * (box.halfExtent + s.slack) + 5.7e-14 * (abs(position.high) + abs(push.anchor)) + box.flushed;
   // 2^-37 of the way, for the velocity that sensorBoxOf (nodes.glsl) raises.
   const float way = farthest + s.clearance;
-  sensor.halfExtent = 1.000001 * (halfExtent + s.clearance + 7.3e-12 * way) + s.directionError * way;
+  sensor.halfExtent = 1.000001 * (halfExtent + s.clearance + 7.3e-12 * way) + kAxisError * way;
   sensor.mask = s.mask;
   sensor.firstExcluded = s.firstExcluded;
   sensor.endExcluded = s.endExcluded;
@@ -112,6 +126,12 @@ uint encode(uint i, StatedSearch s, out uint hi) {
   sweeps[i].start = scaledDistance(s.certain, exponent);
   sweeps[i].stepPerUnit = s.perWay <= 0.0 ? s.perWay : s.perWay * twoTo(-exponent);
 #ifndef RADAR_NO_DOUBLES
+  if (sweeps[i].directionLength < 0.0LF) {
+    const double length = lengthOf(dvec3(sweeps[i].direction[0], sweeps[i].direction[1], sweeps[i].direction[2]));
+    sweeps[i].directionLength = length;
+    if (sweeps[i].perParameter < 0.0LF) sweeps[i].perParameter = length;
+    if (length == 0.0LF) sweeps[i].cpuDecides = 1;
+  }
   if (sweeps[i].magnitude < 0.0LF) sweeps[i].magnitude = magnitudeOf(sweeps[i].pose, mesh);
 #endif
   hi = floatBitsToUint(sensor.distance);

@@ -15,19 +15,15 @@ namespace gpu {
 // A search as the CPU states it, or plan.comp for a host's shader; encode.comp makes a Sensor of it. Lengths are the world's;
 // those with an exponent are the mantissas of lengths.
 struct StatedSearch {
-  Point across;      // unit axes of the sensor's frame in the world: across the motion, across, along
   float clearance;   // rounded up
-  Point upwards;
+  float tolerance;   // of it, as asked, rounded up
   float slackShare;  // by how much a default slack may move a corner, as a share of both placements' errors
-  Point direction;
-  float tolerance;       // of the clearance, as asked, rounded up
-  float directionError;  // of the axes' components, beyond their rounding
-  float slack;           // by which the sensor's vertices may be moved, rounded up
-  int exponent;          // of `way`, `certain`, `stopBefore`
-  float way;             // to the end, rounded up
-  float certain;         // as `way`, and of a step rounded down
-  float stopBefore;      // see Sensor
-  float perWay;          // of a step: t per way, rounded down; negative if nothing moves; of a sweep 0
+  float slack;       // by which the sensor's vertices may be moved, rounded up
+  int exponent;      // of `way`, `certain`, `stopBefore`
+  float way;         // to the end, rounded up
+  float certain;     // as `way`, and of a step rounded down
+  float stopBefore;  // see Sensor
+  float perWay;      // of a step: t per way, rounded down; negative if nothing moves; of a sweep 0
   uint mesh;
   uint mask;
   uint firstExcluded;  // in the list of excluded objects
@@ -63,7 +59,7 @@ INTEROP_CONST kSensorTexels = 19;
 struct Sweep {
   PreciseRows pose;
   double direction[3];
-  double directionLength;  // world units
+  double directionLength;  // world units; stated negative if only encode.comp finds it
   double distance;         // t at the end: D, of a step 1
   uint anyHit;      // the query has `anyHit`
   uint result;      // index of its answer
@@ -71,11 +67,11 @@ struct Sweep {
   float start;      // SearchState::hi below this is that of a certain contact before the end
   uint ignoreLeaving;  // only pairs that block count
   uint isMirrored;     // the pose turns the mesh inside out
-  uint cpuDecides;     // all pairs that may be first: with a clearance, or if the length is not known to the last bit
+  uint cpuDecides;     // all pairs that may be first: with a clearance, or if encode.comp cannot find the length
   float stepPerUnit;   // of a step: t per scaled length, rounded down; negative if nothing moves; of a sweep 0
   double slack;        // radar::Query::slack; negative: by default
   double magnitude;    // of the placed mesh, for the default; stated negative if only the device knows the mesh
-  double perParameter; // t per `direction`
+  double perParameter; // t per `direction`; stated negative if that is its length
   double drift[3];     // of a step: the object's displacement
 };
 

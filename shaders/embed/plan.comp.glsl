@@ -1,7 +1,6 @@
 // States the searches for the queries that a host's shader has written, one invocation per query, as engine/contact/search_plan.cpp
 // does (docs/method.md, "A host's geometry").
 #version 460
-#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
@@ -48,19 +47,6 @@ bool isValid(HostQuery q) {
   return isMesh && q.pose.isFinite && isDirection && isDistance && (q.flags & ~kQueryAnyHit) == 0;
 }
 
-#ifndef RADAR_NO_DOUBLES
-#include "contact/root.glsl"
-// The length, rounded to nearest, by the steps of exact::length; 0 where that needs exact arithmetic.
-double lengthOf(dvec3 d) {
-  const DoubleDouble square = plus(plus(product(d.x, d.x), product(d.y, d.y)), product(d.z, d.z));
-  const double root = rootOf(square.high);
-  const double rest = quotient(minus(square, product(root, root)).high, 2.0LF * root);
-  const double error = 9.094947017729282e-13LF * abs(rest) + 8.077935669463161e-28LF * root;  // 2^-40, 2^-90
-  const double below = root + (rest - error), above = root + (rest + error);
-  return below == above ? below : 0.0LF;
-}
-#endif
-
 void writeSweep(uint i, HostQuery q, int directionExponent) {
   Sweep sweep;
   sweep.pose = preciseRows(q.pose);
@@ -79,9 +65,8 @@ void writeSweep(uint i, HostQuery q, int directionExponent) {
 #else
   const dvec3 d = dvec3(packDouble2x32(x), packDouble2x32(y), packDouble2x32(z));
   sweep.direction = double[3](d.x, d.y, d.z);
-  sweep.directionLength = sweep.perParameter = lengthOf(d);
+  sweep.directionLength = sweep.perParameter = -1.0LF;
   sweep.drift = double[3](0.0LF, 0.0LF, 0.0LF);
-  sweep.cpuDecides = sweep.directionLength == 0.0LF ? 1 : 0;
   sweep.slack = sweep.magnitude = 0.0LF;
   sweep.distance = packDouble2x32(distance);
 #endif
@@ -92,12 +77,6 @@ StatedSearch statedFor(uint i, HostQuery q) {
   StatedSearch s;
   s.flags = !isValid(q) ? kSearchNoQuery : push.inRange == 0 ? kSearchOutOfRange : 0;
   if (s.flags != 0) return s;
-  const int directionExponent = exponentOf(q.direction);
-  const vec3[3] axes = axesAlong(q.direction, directionExponent);
-  s.across = axes[0];
-  s.upwards = axes[1];
-  s.direction = axes[2];
-  s.directionError = 3e-8;  // 2^-25
   s.clearance = s.slackShare = s.tolerance = s.slack = s.perWay = 0.0;
   const uint significand = q.distance >= 0x800000u ? q.distance : q.distance << (23 - findMSB(q.distance));
   const bool moves = (q.distance & 0x7fffffffu) != 0;
@@ -110,7 +89,7 @@ StatedSearch statedFor(uint i, HostQuery q) {
   s.endExcluded = q.exclude == kNobody ? i : i + 1;
   s.start = push.start;
   excluded[i] = q.exclude;
-  writeSweep(i, q, directionExponent);
+  writeSweep(i, q, exponentOf(q.direction));
   return s;
 }
 

@@ -67,6 +67,7 @@ Result BracketedContact::answer(const Near& near) const {
   result.triB = near.name.triB;
   result.triA = near.name.triA;
   setSeparation(result, near.approach.atLo);
+  if (query_.clearance == 0) result.gap = 0;
   return result;
 }
 

@@ -61,7 +61,7 @@ bool areSame(const QuerySpec& a, const QuerySpec& b) {
   };
   if (a.turn.has_value() != b.turn.has_value() || (a.turn && !sameTurn(*a.turn, *b.turn))) return false;
   return a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor() == b.sensor() && a.mode == b.mode &&
-         a.direction == b.direction && a.distance == b.distance && a.motion == b.motion &&
+         a.direction == b.direction && a.distance == b.distance && a.motion == b.motion && a.chain == b.chain &&
          std::ranges::all_of(queryFields(), same);
 }
 
@@ -79,6 +79,18 @@ void checkRoundTrip(const Workload& workload, const std::filesystem::path& folde
     return a.id == b.id && a.base == b.base && a.instances == b.instances && a.masks == b.masks &&
            a.motions == b.motions && std::ranges::equal(a.deforms, b.deforms, sameDeformation);
   };
+  const auto sameLink = [](const Link& a, const Link& b) {
+    const auto samePlace = [](const LinkMesh& c, const LinkMesh& d) {
+      return c.mesh == d.mesh && c.linkFromMesh == d.linkFromMesh;
+    };
+    return a.parent == b.parent && a.parentFromJoint == b.parentFromJoint && a.joint == b.joint && a.axis == b.axis &&
+           a.variable == b.variable && std::ranges::equal(a.meshes, b.meshes, samePlace);
+  };
+  const auto sameChain = [&](const ChainSpec& a, const ChainSpec& b) {
+    return std::ranges::equal(a.links, b.links, sameLink) && a.pairs == b.pairs && a.linkNames == b.linkNames &&
+           a.variableNames == b.variableNames;
+  };
+  require(std::ranges::equal(workload.chains, again.chains, sameChain), "other chains when read again");
   require(std::ranges::equal(workload.meshes, again.meshes, sameMesh), "other meshes when read again");
   require(std::ranges::equal(workload.scenes, again.scenes, sameScene), "other scenes when read again");
   require(std::ranges::equal(workload.queries, again.queries, areSame), "other queries when read again");
@@ -116,6 +128,13 @@ std::vector<std::string> seeds() {
       head + R"(["b.off"], "scenes": [{"assembly": "parts.obj", "deforms": []}, {"base": 0, "instances": [[0]]}],
  "queries": [{"id": "p", "scene": 1, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "clearance": 0.25},
  {"id": "q", "scene": 1, "sensor": [0], "dir": [1, 0, 0], "D": 3, "ignore_leaving": true, "hits": 2, "mode": "contact"}]})",
+      head +
+          R"(["a.obj", "b.off"], "chains": [{"links": [{"name": "x", "meshes": [[0], [1, 1,0,0,0, 0,1,0,0, 0,0,1,-2]]},
+ {"name": "y", "parent": "x", "joint": "revolute", "axis": [0, 1, 1], "variable": "q", "meshes": [[1]]},
+ {"name": "z", "parent": "y", "joint": "prismatic", "origin": [0,-1,0,3, 1,0,0,0, 0,0,1,0], "meshes": [[0]]}],
+ "ignored": [["x", "y"]]}], "scenes": [{"instances": [[1, 1,0,0,2, 0,1,0,2, 0,0,1,0]]}],
+ "queries": [{"id": "p", "scene": 0, "chain": 0, "from": [0, 1], "to": [1.5, -1], "base": [1,0,0,0, 0,1,0,0, 0,0,1,5]},
+ {"id": "q", "scene": 0, "chain": 0, "from": [0.5, 1], "to": [-2, 0.5], "clearance": 0.25, "exclude": [0]}]})",
       head + R"(["a.obj"], "scenes": [{"instances": [[0]], "deforms": [[0, "positions.ply"]]}, {"instances": []}],
  "queries": [{"id": "p", "scene": 0, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "mode": "reference"},
  {"id": "q", "scene": 0, "batch": 18446744073709551615, "sensor": [0], "dir": [1, 0, 0], "D": 0},
@@ -124,7 +143,7 @@ std::vector<std::string> seeds() {
 
 constexpr const char* kWords =
     R"("format"~"meshes"~"scenes"~"queries"~"id"~"base"~"instances"~"instances_file"~"assembly"~"masks"~)"
-    R"("motions"~"deforms"~"scene"~"batch"~"sensor"~"exclude"~"dir"~"D"~"motion"~"turn"~"axis"~"angle"~"centre"~"to"~"about"~"mask"~"any_hit"~"mode"~"speed"~)"
+    R"("motions"~"deforms"~"scene"~"batch"~"sensor"~"exclude"~"dir"~"D"~"motion"~"turn"~"axis"~"angle"~"centre"~"to"~"about"~"chains"~"links"~"pairs"~"ignored"~"name"~"parent"~"joint"~"origin"~"variable"~"chain"~"from"~"revolute"~"prismatic"~"fixed"~"x"~"y"~"mask"~"any_hit"~"mode"~"speed"~)"
     R"("file"~"scale"~"tolerance"~"ignore_leaving"~"slack"~"skip_overlapping"~"hits"~"clearance"~"rotation"~"all"~"sampled"~)"
     R"("contact"~"reference"~"a.obj"~"b.off"~"parts.obj"~"parts.obj#0"~"parts.obj#x"~"instances.stl"~)"
     R"("broken.stl"~"positions.ply"~null~true~false~[~]~{~}~, ~: ~0~-1~1~2~0.5~1e999~1e308~-1e-320~4294967295~)"

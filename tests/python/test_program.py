@@ -9,6 +9,8 @@ import pytest
 
 import cyber_radar
 from conftest import FACES, box, random_poses
+from cyber_radar import Status
+from test_chains import arm, configurations
 
 COUNT = 100_000
 ENGINE = "/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb"
@@ -61,6 +63,57 @@ def test_random_casts_have_the_bits_of_the_program(tmp_path):
     assert 0.2 < free.mean() < 0.8
     own = scene.cast(mesh, poses, displacements, mode="reference")
     np.testing.assert_allclose(own.t, casts.t, rtol=1e-14)
+
+
+def test_a_chain_of_a_file_has_the_bits_of_moves(tmp_path):
+    """Also about which links are tested with each other."""
+    chain, count = arm(), 300
+    held, names = chain.scene.objects(), ["rod.obj", "cube.obj"]
+    for mesh, name in enumerate(names):
+        vertices, faces = chain.scene.mesh(mesh)
+        lines = [f"v {x} {y} {z}" for x, y, z in vertices.tolist()] + [f"f {a} {b} {c}" for a, b, c in faces + 1]
+        (tmp_path / name).write_text("\n".join(lines))
+    links = []
+    for link in chain.links:
+        entry = {"name": link.name, "joint": link.joint, "meshes": []}
+        for mesh in link.meshes:
+            entry["meshes"].append(instance(*mesh) if isinstance(mesh, tuple) else [mesh])
+        if link.parent is not None:
+            entry["parent"] = link.parent
+        if link.origin is not None:
+            entry["origin"] = np.asarray(link.origin)[:3].ravel().tolist()
+        if link.joint != "fixed":
+            entry["axis"] = list(link.axis)
+        if link.variable is not None:
+            entry["variable"] = link.variable
+        links.append(entry)
+    start, end = configurations(1, count), configurations(2, count)
+    base = random_poses(np.random.default_rng(3), count, 1)
+    asked = [
+        {"id": str(i), "scene": 0, "chain": 0, "from": start[i].tolist(), "to": end[i].tolist(),
+         "base": base[i, :3].ravel().tolist()}
+        for i in range(count)
+    ]  # fmt: skip
+    queries = {
+        "format": "cyber-radar-queries-1", "meshes": names, "chains": [{"links": links}],
+        "scenes": [{"instances": [instance(int(mesh), pose) for mesh, pose in zip(held.meshes, held.transforms)]}],
+        "queries": asked + [{**query, "id": f"near {i}", "clearance": 0.05} for i, query in enumerate(asked)],
+    }  # fmt: skip
+    answers = ask_program(tmp_path, queries)
+    for first, clearance in ((0, 0.0), (count, 0.05)):
+        moves = chain.move(start, end, base, clearance=clearance)
+        part = answers[first : first + count]
+        assert [answer["status"] for answer in part] == [Status(int(s)).name.lower() for s in moves.status]
+        assert [answer["link_name"] or "" for answer in part] == moves.link_names.tolist()
+        assert [answer["other_link_name"] or "" for answer in part] == moves.other_link_names.tolist()
+        for name in ("link", "mesh", "object", "other_link", "other_mesh", "tri_a", "tri_b"):
+            np.testing.assert_array_equal(column(part, name, -1), moves.records[name], name)
+        for name in ("fraction", "fraction_lo", "fraction_hi"):
+            np.testing.assert_array_equal(column(part, name, np.inf), moves.records[name], name)
+        for name in ("point", "normal"):
+            of_file = np.array([[np.nan] * 3 if answer[name] is None else answer[name] for answer in part])
+            np.testing.assert_array_equal(of_file, moves.records[name], name)
+        assert {0, 1} <= set(moves.status.tolist()) and (moves.other_link >= 0).any()
 
 
 def test_an_assembly_has_the_answers_of_the_program(tmp_path):

@@ -177,6 +177,57 @@ TEST_CASE("a sensor that turns in a glTF file is at each key where the turn take
   }
 }
 
+TEST_CASE("a chain in a glTF file has its meshes where its joints take them") {
+  Workload workload = makeWorkload(Soups{.objects = 1, .sensors = 1});
+  ChainSpec& chain = workload.chains.emplace_back();
+  chain.linkNames = {"rail", "arm", "hand"};
+  chain.variables = 2;
+  const Transform up{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4}}, sheared{{1, 0.5, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3}};
+  chain.links = {{.joint = JointType::prismatic, .axis = {0, 1e-310, 0}, .variable = 1},
+                 {.parent = 0,
+                  .parentFromJoint = up,
+                  .joint = JointType::revolute,
+                  .axis = {0, 2, 0},
+                  .variable = 0,
+                  .meshes = {{0, {}}}},
+                 {.parent = 1, .parentFromJoint = up, .meshes = {{0, {}}, {0, sheared}}}};
+  QuerySpec& query = workload.queries.front();
+  query = {};
+  query.id = "q";
+  query.worldFromMesh.m[3] = 100;
+  query.chain = ChainWay{0, {0, 1}, {12, 3}};
+  Result answer(Status::hit);
+  answer.t = 0.5;
+  const Loaded loaded(gltfOf(workload, {&answer, 1}, {}).bytes);
+  // As the file has them at rest, all joints are at 0.
+  const auto placed = [](const Transform& pose, double z) {
+    Transform out = pose;
+    out.m[3] += 100;
+    out.m[11] += z;
+    return out;
+  };
+  checkPlaced(loaded.corners("q arm mesh 0"), workload.meshes[0], placed({}, 4));
+  checkPlaced(loaded.corners("q hand mesh 0"), workload.meshes[0], placed({}, 8));
+  checkPlaced(loaded.corners("q hand mesh 1"), workload.meshes[0], placed(sheared, 8));
+  const aiAnimation& animation = *loaded.scene->mAnimations[0];
+  REQUIRE(animation.mNumChannels == 2);
+  for (unsigned c = 0; c < 2; ++c) {
+    const aiNodeAnim& moves = *animation.mChannels[c];
+    if (moves.mNodeName.C_Str() == std::string("q rail")) {
+      CHECK((moves.mPositionKeys[0].mValue == aiVector3D(0, 1, 0) &&
+             moves.mPositionKeys[1].mValue == aiVector3D(0, 2, 0)));
+      CHECK(moves.mPositionKeys[1].mTime == Approx(1.5 * animation.mTicksPerSecond));
+      continue;
+    }
+    CHECK(moves.mNodeName.C_Str() == std::string("q arm"));
+    REQUIRE(moves.mNumRotationKeys == 8);
+    for (unsigned k = 0; k < 8; ++k) {
+      const aiVector3D found = moves.mRotationKeys[k].mValue.Rotate({0, 0, 1});
+      CHECK(std::abs(found.x - std::sin(6.0 * k / 7)) + std::abs(found.z - std::cos(6.0 * k / 7)) < 1e-5);
+    }
+  }
+}
+
 TEST_CASE("meshes are stored once, whatever their statuses, but deformed or sheared ones") {
   const Workload workload = makeWorkload(Figure7{.teapots = 6, .boxes = 50, .steps = 4});
   Scene scene;

@@ -21,7 +21,8 @@ const poses = (places) =>
 function answersOf(rows) {
   const of = (type, name, none) => array(type, rows.flatMap((row) => row[name] ?? none));
   const numbers = Object.fromEntries(["t", "lo", "hi", "gap"].map((name) => [name, of("f8", name, NaN)]));
-  const ids = Object.fromEntries(["object", "tri_a", "tri_b"].map((name) => [name, of("u4", name, NONE)]));
+  const names = ["object", "tri_a", "tri_b", "link", "mesh", "other_link", "other_mesh"];
+  const ids = Object.fromEntries(names.map((name) => [name, of("u4", name, NONE)]));
   const places = Object.fromEntries(["point", "normal"].map((name) => [name, of("f8", name, [NaN, NaN, NaN])]));
   return { status: array("u1", rows.map(({ status }) => STATUSES.indexOf(status))), ...numbers, ...ids, ...places };
 }
@@ -30,9 +31,9 @@ const STATUSES = ["hit", "clear", "overlap", "undecided", "invalid"];
 
 /**
  * What page.cpp writes of a scene of cubes of side 2 at x = 0, 10, 20, and sensors like them, which move 10 along x.
- * `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left, ignored, id, at, asked, step, turn}.
+ * `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left, ignored, id, at, asked, step, turn, move}.
  */
-function dataOf(rows) {
+function dataOf(rows, chains = []) {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)));
   const by = (name) => Object.fromEntries(rows.flatMap((row, i) => (row[name] ? [[i, row[name]]] : [])));
   const objects = [0, 10, 20].map((x) => [x, 0, 0]);
@@ -44,10 +45,10 @@ function dataOf(rows) {
     ...poses(rows.map(({ at = [-5, 0, 0] }) => at)), count: rows.length, id: rows.map(({ id }, i) => id ?? `${i}`),
     scene: array("u4", rows.map(() => 0)), way: array("f8", rows.flatMap(() => [10, 0, 0])),
     whole: array("f8", rows.map(({ step }) => (step ? 1 : 10))), step: array("u1", rows.map(({ step }) => (step ? 1 : 0))),
-    asked: by("asked"), ignored: by("ignored"), turns: by("turn"),
+    asked: by("asked"), ignored: by("ignored"), turns: by("turn"), moves: by("move"),
   };
   return new Data(JSON.stringify({
-    title: "", notes: [], tour: [], none: NONE, statuses: STATUSES, scenes: [scene], queries, answers: answersOf(rows),
+    title: "", notes: [], tour: [], none: NONE, statuses: STATUSES, chains, scenes: [scene], queries, answers: answersOf(rows),
     hits: { ...answersOf(rows.flatMap(({ hits = [] }) => hits)), first: array("u4", firstOf(rows)) },
     meshes: [{ name: "cube", positions: array("f4", corners), indices: array("u4", [0, 1, 3, 4, 5, 7]) }],
     left: by("left"), reasons: by("reasons"), others: by("others"), scopes: {},
@@ -82,13 +83,13 @@ test("a sensor that turns goes round its centre, which goes straight", () => {
   assert.deepEqual(data.placeAt(3, 0.5), [0, 0, 0]);
   // A corner of the cube, by the pose that is drawn.
   for (const share of [0, 0.3, 0.5]) {
-    const { placed, i, moved } = data.sensorAt(0, share), c = Math.cos(share * Math.PI), s = Math.sin(share * Math.PI);
+    const { placed, i, moved } = data.bodiesAt(0, share)[0], c = Math.cos(share * Math.PI), s = Math.sin(share * Math.PI);
     const place = plus(placed.toWorld(i, [1, -1, 1]), moved), arm = [1, -5, 1];
     const expected = [-5 + 10 * share + c * arm[0] - s * arm[1], 4 + s * arm[0] + c * arm[1], 1];
     assert.ok(lengthOf(minus(place, expected)) < 1e-6, `${place}`);
   }
-  assert.equal(data.sensorAt(0, 0.5), data.sensorAt(0, 0.5));
-  assert.deepEqual([data.sensorAt(2, 0.5).placed, data.sensorAt(2, 0.5).moved], [data.sensors, [5, 0, 0]]);
+  assert.equal(data.bodiesAt(0, 0.5), data.bodiesAt(0, 0.5));
+  assert.deepEqual(data.bodiesAt(2, 0.5), [{ placed: data.sensors, i: 2, moved: [5, 0, 0] }]);
   const path = data.path(0, 0, 0.5);
   assert.equal(path.length, 9);
   assert.deepEqual([rounded(path[0]), rounded(path.at(-1))], [[-5, 0, 0], [4, 4, 0]]);
@@ -99,6 +100,43 @@ test("a sensor that turns goes round its centre, which goes straight", () => {
   assert.deepEqual(data.answers.map(({ share }) => share), [0.5, 1, 0.5, 1]);
   assert.equal(inWords(data.answers[0])[1], "It turns by 180° about (0, 0, 1e-310) through (-5, 4, 0).");
   assert.equal(inWords(data.answers[0])[0], "Free for 0.5 of the step, then it touches object 0 (cube).");
+});
+
+test("a chain's meshes are where its joints take them", () => {
+  const here = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], up = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4];
+  const links = [
+    { name: "rail", parent: null, origin: here, joint: "prismatic", axis: [0, 1e-310, 0], variable: 1, meshes: [] },
+    { name: "arm", parent: 0, origin: up, joint: "revolute", axis: [0, 2, 0], variable: 0, meshes: [{ mesh: 0, pose: up }] },
+    { name: "hand", parent: 1, origin: up, joint: "fixed", axis: [1, 0, 0], variable: 0,
+      meshes: [{ mesh: 0, pose: here }, { mesh: 0, pose: up }] },
+  ];
+  const move = { chain: 0, from: [0, 1], to: [Math.PI, 3], base: [1, 0, 0, 100, 0, 1, 0, 0, 0, 0, 1, 0] };
+  const hit = { ...HIT, object: NONE, t: 0.5, lo: 0.5, hi: 0.6, step: true, move, link: 2, mesh: 1, other_link: 1, other_mesh: 0 };
+  const data = dataOf([hit, { ...HIT, t: 0.5, step: true, move, link: 1, mesh: 0 }, { ...CLEAR, step: true, move },
+    { ...CLEAR, step: true, move: { ...move, chain: 1 } }], [{ links }, { links: links.slice(0, 1) }]);
+  const rounded = (v) => v.map((x) => Number(x.toFixed(9)) + 0);
+  const centres = (share) => data.bodiesAt(0, share).map(({ placed, i }) => rounded(placed.centreOf(i)));
+  assert.deepEqual(centres(0), [[100, 1, 8], [100, 1, 8], [100, 1, 12]]);
+  assert.deepEqual(centres(0.5), [[104, 2, 4], [104, 2, 4], [108, 2, 4]]);
+  assert.deepEqual(centres(1), [[100, 3, 0], [100, 3, 0], [100, 3, -4]]);
+  // The mesh that touches stands among the sensors, or else the last one; a chain without meshes stands on its base.
+  assert.deepEqual([0, 1, 2, 3].map((query) => rounded(data.sensors.centreOf(query))),
+    [[100, 1, 12], [100, 1, 8], [100, 1, 12], [100, 0, 0]]);
+  assert.deepEqual([0, 1, 2, 3].map((query) => rounded(data.placeAt(query, 0.5))),
+    [[108, 2, 4], [104, 2, 4], [108, 2, 4], [100, 0, 0]]);
+  assert.equal(data.path(0, 0, 0.5).length, 9);
+  assert.ok(data.extent(0).bounds.hi[2] > 12);
+  assert.equal(inWords(data.answers[0])[0], "Free for 0.5 of the step, then its link hand touches its link arm.");
+  assert.ok(inWords(data.answers[0]).includes("Triangle 0 of its link hand meets triangle 1 of its link arm (yellow)."));
+  assert.ok(inWords(data.answers[0]).includes("Chain: 3 links, 3 meshes, 6 triangles"));
+  assert.equal(inWords(data.answers[1])[0], "Free for 0.5 of the step, then its link arm touches object 0 (cube).");
+  const object = COLUMNS.find(({ name }) => name === "object");
+  assert.deepEqual(data.answers.slice(0, 3).map(object.text), ["arm", "0 (lid)".slice(0, 1), ""]);
+  // Its triangles, of two links, are marked.
+  const look = new Look(data), stage = { triangles: [], triangle: (corners) => stage.triangles.push(corners), line() {}, mark() {} };
+  look.chosen = 0;
+  look.explainContact(stage, data.answers[0]);
+  assert.deepEqual(stage.triangles.map(([corner]) => rounded(corner).map(Math.round)), [[107, 1, 5], [105, 1, 5]]);
 });
 
 test("a turn's path is drawn as lines, dashed by leaving out every other", () => {

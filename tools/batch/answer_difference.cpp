@@ -18,7 +18,7 @@ namespace radar::tools {
 
 namespace {
 
-constexpr std::array kCompared{"t", "object", "tri_a", "tri_b"};
+constexpr std::array kCompared{"t", "link", "mesh", "object", "other_link", "other_mesh", "tri_a", "tri_b"};
 /// NaN for null.
 using Contact = std::array<double, kCompared.size()>;
 

@@ -32,7 +32,7 @@ void appendJson(std::string& text, const AnswerField& field, double value) {
   }
 }
 
-void add(JsonObject& to, const AnswerField& field, const AnswerRow& row, std::span<const std::string> names) {
+void add(JsonObject& to, const AnswerField& field, const AnswerRow& row, const AnswerNames& names) {
   std::string& text = to.begin(field.name);
   if (field.width == 1 || std::isnan(field.value(row, 0))) {
     appendJson(text, field, field.value(row, 0));
@@ -42,16 +42,21 @@ void add(JsonObject& to, const AnswerField& field, const AnswerRow& row, std::sp
     }
     text += "]";
   }
-  if (field.name != std::string_view("object") || names.empty()) return;
-  const ObjectId object = row.result.object;
-  to.add("object_name", object == kNone || names[object].empty() ? "null" : quoted(names[object]));
+  const auto addName = [&](const char* member, uint32_t id, std::span<const std::string> of) {
+    if (of.empty() || field.name + std::string("_name") != member) return;
+    to.add(member, id == kNone || of[id].empty() ? "null" : quoted(of[id]));
+  };
+  addName("object_name", row.result.object, names.objects);
+  addName("link_name", row.links.value_or(LinksMet{}).link, names.links);
+  addName("other_link_name", row.links.value_or(LinksMet{}).otherLink, names.links);
 }
 
 AnswerRow rowOf(const QuerySpec& query, const Answer& answer, uint64_t index = 0) {
-  return {query, answer.result, answer.mode, query.speed, index};
+  return {query,       answer.result, answer.mode,
+          query.speed, index,         query.chain ? std::optional(answer.links) : std::nullopt};
 }
 
-std::string hitText(const QuerySpec& query, const Result& hit, std::span<const std::string> names) {
+std::string hitText(const QuerySpec& query, const Result& hit, const AnswerNames& names) {
   const AnswerRow row(query, hit, AnswerMode::contact);
   const AnswerField* const first = findAnswerField("object");
   JsonObject object;
@@ -101,24 +106,24 @@ std::string tableRow(const QuerySpec& query, const Answer& answer, std::span<con
   return text + "," + cell(answer.reason) + "\n";
 }
 
-std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames) {
+std::string answerLine(const QuerySpec& query, const Answer& answer, const AnswerNames& names) {
   const AnswerRow row = rowOf(query, answer);
   JsonObject line;
   line.addString("id", query.id);
   for (const AnswerField& field : answerFields()) {
     if (!has(row, field.line)) continue;
-    add(line, field, row, objectNames);
+    add(line, field, row, names);
     const bool isInvalid = answer.result.status == Status::invalid;
     if (isInvalid && field.name == std::string_view("status")) line.addString("reason", answer.reason);
   }
   if (query.hits > 1) {
     line.add("hits", listOf(answer.listed.hits, ", ",
-                            [&](std::string& text, const Result& hit) { text += hitText(query, hit, objectNames); }));
+                            [&](std::string& text, const Result& hit) { text += hitText(query, hit, names); }));
   }
   if (query.skipOverlapping) {
     line.add("overlapping", listOf(answer.listed.overlapping, ", ",
                                    [](std::string& text, ObjectId id) { text += std::to_string(id); }));
-    if (!objectNames.empty()) {
+    if (const std::vector<std::string>& objectNames = names.objects; !objectNames.empty()) {
       line.add("overlapping_names", listOf(answer.listed.overlapping, ", ", [&](std::string& text, ObjectId id) {
                  text += objectNames[id].empty() ? "null" : quoted(objectNames[id]);
                }));

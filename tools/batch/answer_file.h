@@ -14,12 +14,19 @@ struct Answer {
   AnswerMode mode = AnswerMode::reference;
   std::string reason;  ///< why the status is invalid
   Listed listed;
+  LinksMet links{};  ///< of a chain
+};
+
+/// What a query's scene and its chain call their objects and links.
+struct AnswerNames {
+  std::vector<std::string> objects{};  ///< Workload::objectNames
+  std::span<const std::string> links{};
 };
 
 /// One line, without its end. All keys of the format are there, with null for what the answer does not have;
 /// `reason` only where the status is invalid, `hits` and `overlapping` only where the query asks for them,
-/// `object_name` and `overlapping_names` only with `objectNames`, which are Workload::objectNames of the query's scene.
-std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames = {});
+/// `object_name` and `overlapping_names` only where objects have names.
+std::string answerLine(const QuerySpec& query, const Answer& answer, const AnswerNames& names = {});
 
 /// The same as a row of comma-separated values (RFC 4180, but lines end as lines do), under this head; both with their
 /// ends. Empty for null.

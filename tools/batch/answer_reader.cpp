@@ -30,26 +30,49 @@ void requireBelow(const RowReader& row, const char* name, uint64_t limit) {
   row.refuse(name, "expected a whole number below " + std::to_string(limit) + ", got " + inShortest(value));
 }
 
-/// `status`: of a contact in a list, which has none of its own.
-Result resultOf(const RowReader& row, const Workload& workload, std::optional<Status> status = {}) {
+/// A mesh of one of a chain's links, or none.
+const MeshData* meshOf(const RowReader& row, const Workload& workload, const char* linkName, const char* meshName,
+                       uint32_t& link, uint32_t& mesh) {
+  const ChainSpec& chain = workload.chains[row.query.chain->chain];
+  const double number = row.number(*findAnswerField(linkName), 0);
+  if (std::isnan(number)) return nullptr;
+  requireBelow(row, linkName, chain.links.size());
+  link = static_cast<uint32_t>(number);
+  const std::vector<LinkMesh>& meshes = chain.links[link].meshes;
+  requireBelow(row, meshName, meshes.size());
+  const double place = row.number(*findAnswerField(meshName), 0);
+  if (std::isnan(place)) row.refuse(meshName, "expected the number of a mesh, got none");
+  mesh = static_cast<uint32_t>(place);
+  return &workload.meshes[meshes[mesh].mesh];
+}
+
+/// `status`: of a contact in a list, which has none of its own. `links`: read of a chain's answer.
+Result resultOf(const RowReader& row, const Workload& workload, std::optional<Status> status, LinksMet& links) {
   const QuerySpec& query = row.query;
   const AnswerField& ofStatus = *findAnswerField("status");
   const double code = status ? double(*status) : row.number(ofStatus, 0);
   if (std::isnan(code)) row.refuse("status", "expected a status, got none");
   Result result(static_cast<Status>(static_cast<uint32_t>(code)));
   requireBelow(row, "object", workload.objectCount(query.scene));
-  requireBelow(row, "tri_a", workload.meshes[query.mesh].triangleCount());
+  const MeshData *moved = query.chain ? nullptr : &workload.meshes[query.mesh], *touched = nullptr;
+  if (query.chain) {
+    moved = meshOf(row, workload, "link", "mesh", links.link, links.mesh);
+    touched = meshOf(row, workload, "other_link", "other_mesh", links.otherLink, links.otherMesh);
+  }
+  if (moved != nullptr) requireBelow(row, "tri_a", moved->triangleCount());
   for (const AnswerField& field : answerFields()) {
     if (!field.set || &field == &ofStatus || field.line == When::never) continue;
     const AnswerField& from = takesStep(query) && field.ofStep ? *findAnswerField(field.ofStep) : field;
     for (size_t part = 0; part < field.width; ++part) field.set(result, row.number(from, part), part);
   }
-  if (result.object == kNone) {
+  if (result.object != kNone) touched = &workload.meshes[workload.instance(query.scene, result.object).mesh];
+  if (moved == nullptr) result.triA = kNone;
+  if (touched == nullptr) {
     result.triB = kNone;
   } else {
-    requireBelow(row, "tri_b", workload.meshes[workload.instance(query.scene, result.object).mesh].triangleCount());
+    requireBelow(row, "tri_b", touched->triangleCount());
   }
-  const bool touches = result.object != kNone && (result.status == Status::hit || result.status == Status::overlap);
+  const bool touches = touched != nullptr && (result.status == Status::hit || result.status == Status::overlap);
   if (!(query.clearance > 0)) result.gap = touches ? 0 : double{NAN};
   return result;
 }
@@ -61,7 +84,8 @@ RowReader membersOf(const JsonValue& from, const std::string& file, const std::s
 /// A contact in a list.
 Result contactOf(const RowReader& row, const Workload& workload) {
   const double hi = row.number(*findAnswerField("hi"), 0);
-  return resultOf(row, workload, std::isnan(hi) ? Status::undecided : hi == 0 ? Status::overlap : Status::hit);
+  LinksMet links;
+  return resultOf(row, workload, std::isnan(hi) ? Status::undecided : hi == 0 ? Status::overlap : Status::hit, links);
 }
 
 [[noreturn]] void refuseCount(const std::string& file, uint64_t expected, uint64_t got) {
@@ -83,7 +107,7 @@ std::vector<Answer> readLines(const std::string& file, std::string_view text, co
       throw InputError(file, place, "expected the answer to query \"" + query.id + "\", got that to \"" + id + "\"");
     }
     Answer& answer = answers.emplace_back();
-    answer.result = resultOf(membersOf(root, file, place, query), workload);
+    answer.result = resultOf(membersOf(root, file, place, query), workload, {}, answer.links);
     root.ifHas("hits", [&](const JsonValue& list) {
       list.forEach([&](const JsonValue& hit) {
         hit.member("object").index(workload.objectCount(query.scene), "objects");
@@ -110,7 +134,7 @@ std::vector<Answer> readRecords(const std::string& file, const Workload& workloa
   for (uint64_t i = 0; i < answers.size(); ++i) {
     const RowReader row{file, "record " + std::to_string(i), workload.queries[i],
                         [&](const AnswerField& field, size_t part) { return memberIn(columns, i, field, part); }};
-    answers[i].result = resultOf(row, workload);
+    answers[i].result = resultOf(row, workload, {}, answers[i].links);
     if (answers[i].result.tier <= Tier::sampled) answers[i].mode = AnswerMode::sampled;
   }
   return answers;
@@ -134,6 +158,7 @@ double memberIn(const JsonValue& object, const AnswerField& field, size_t part) 
 
 double memberIn(const Columns& records, uint64_t row, const AnswerField& field, size_t part) {
   const Column* const column = records.find(field.name);
+  if (!column && field.line == When::chain) return NAN;  // records have none
   if (!column || column->width() != field.width) {
     throw InputError(records.name(), "",
                      "expected records of cyber-radar query, with a column " + std::string(field.name));

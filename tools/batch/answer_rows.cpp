@@ -76,16 +76,20 @@ const char* endingOf(AnswerFormat format) {
   return kFormats[static_cast<size_t>(format)].ending;
 }
 
-void requireRoomForLists(const std::filesystem::path& file, const std::optional<std::string>& query) {
+void requireRoom(const std::filesystem::path& file, const ModesAsked& asked) {
   const AnswerFormat format = answerFormatOf(file);
-  if (format == AnswerFormat::lines || !query) return;
+  const auto refuse = [&](const std::string& what, const std::string& query) {
+    throw InputError("--out", file.string(),
+                     std::string("expected another file than ") + endingOf(format) + ", as answers " + what +
+                         " (query \"" + query + "\")");
+  };
+  if (format == AnswerFormat::records && asked.moved) refuse("of a \"chain\" name links", *asked.moved);
+  if (format == AnswerFormat::lines || !asked.listed) return;
   std::string options;
   for (const QueryField& field : queryFields()) {
     if (field.lists) options.append(options.empty() ? "\"" : "\" or \"").append(field.name);
   }
-  throw InputError("--out", file.string(),
-                   std::string("expected another file than ") + endingOf(format) + ", as answers with " + options +
-                       "\" have lists (query \"" + *query + "\")");
+  refuse("with " + options + "\" have lists", *asked.listed);
 }
 
 std::string AnswerRows::text(uint64_t first, std::span<const QuerySpec> queries, std::span<const Answer> answers) {
@@ -97,10 +101,11 @@ std::string AnswerRows::text(uint64_t first, std::span<const QuerySpec> queries,
   for (size_t i = 0; i < queries.size(); ++i) {
     const uint32_t scene = queries[i].scene;
     auto names = names_.find(scene);
-    if (names == names_.end()) names = names_.emplace(scene, world_.objectNames(scene)).first;
+    if (names == names_.end()) names = names_.emplace(scene, AnswerNames{.objects = world_.objectNames(scene)}).first;
     if (format_ == AnswerFormat::table) {
-      rows += tableRow(queries[i], answers[i], names->second);
+      rows += tableRow(queries[i], answers[i], names->second.objects);
     } else {
+      if (queries[i].chain) names->second.links = world_.chains[queries[i].chain->chain].linkNames;
       rows += answerLine(queries[i], answers[i], names->second) + "\n";
     }
   }

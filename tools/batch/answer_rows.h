@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "batch/answer_file.h"
+#include "batch/query_file.h"
 
 namespace radar::tools {
 
@@ -27,9 +28,9 @@ AnswerFormat answerFormatOf(const std::filesystem::path& file);
 AnswerFormat readFormatOf(const std::filesystem::path& file);
 /// How its name ends; of lines, in any other way.
 const char* endingOf(AnswerFormat format);
-/// Throws InputError if a file of that format cannot hold the lists that a query asks for; `query`: its id, if one
-/// does.
-void requireRoomForLists(const std::filesystem::path& file, const std::optional<std::string>& query);
+/// Throws InputError if a file of that format cannot hold what queries ask for: the lists of some, or the links of
+/// chains.
+void requireRoom(const std::filesystem::path& file, const ModesAsked& asked);
 
 /// Makes the rows of one workload's answers. A row depends on its query and its answer alone.
 class AnswerRows {
@@ -42,7 +43,7 @@ class AnswerRows {
  private:
   const Workload& world_;
   AnswerFormat format_;
-  std::map<uint32_t, std::vector<std::string>> names_;  ///< of the objects of the scenes met so far
+  std::map<uint32_t, AnswerNames> names_;  ///< by scene, of those met so far; links are the last chain's
 };
 
 /// What stands before the rows of all answers: nothing before lines, a head before a table's, kRecordsStart bytes

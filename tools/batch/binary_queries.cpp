@@ -209,8 +209,12 @@ void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesyste
   const auto put = [&](const auto& value) { appendBytes(rows, value); };
   // What every query leaves at its default needs no column.
   const auto some = [&](const auto& isGivenIn) { return std::ranges::any_of(queries, isGivenIn); };
-  const bool steps = some(takesStep);
-  if (steps && !std::ranges::all_of(queries, takesStep)) {
+  if (some([](const QuerySpec& query) { return query.chain.has_value(); })) {
+    throw std::runtime_error(file.string() + ": expected queries of sensors alone, got one of a chain");
+  }
+  const auto isStep = [](const QuerySpec& query) { return takesStep(query); };
+  const bool steps = some(isStep);
+  if (steps && !std::ranges::all_of(queries, isStep)) {
     throw std::runtime_error(file.string() + ": expected either motions or directions in all queries, got both");
   }
   const bool moves = some([](const QuerySpec& query) { return query.motion.has_value(); });

@@ -52,7 +52,8 @@ class BinaryQueries {
   std::vector<const Column*> fields_;  ///< of queryFields()
 };
 
-/// Writes queries as such a file; their ids are not kept.
+/// Writes queries as such a file; their ids are not kept. Throws std::runtime_error if they do not fit into
+/// one array: some take steps, or are of chains.
 void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesystem::path& file);
 void writePlaced(std::span<const Instance> instances, const std::filesystem::path& file);
 

@@ -13,6 +13,7 @@ namespace radar::tools {
 
 void ModesAsked::add(const Workload& world, const QuerySpec& query) {
   if (!listed && hasLists(query)) listed = query.id;
+  if (!moved && query.chain) moved = query.id;
   ++modes[query.mode];
   if (query.mode || !exactOnly.empty()) return;
   const std::string reason = tools::exactOnly(world, query);
@@ -23,6 +24,7 @@ void ModesAsked::add(const ModesAsked& later) {
   for (const auto& [mode, count] : later.modes) modes[mode] += count;
   if (exactOnly.empty()) exactOnly = later.exactOnly;
   if (!listed) listed = later.listed;
+  if (!moved) moved = later.moved;
 }
 
 namespace {

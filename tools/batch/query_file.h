@@ -24,6 +24,7 @@ struct ModesAsked {
   std::map<std::optional<AnswerMode>, uint64_t> modes;  ///< how many; none: they leave the choice to the command
   std::string exactOnly;                                ///< what of one that does mode sampled does not offer; or empty
   std::optional<std::string> listed;  ///< the id of one whose answer has lists: of hits, or of what overlaps
+  std::optional<std::string> moved;   ///< of one of a chain
   void add(const Workload& world, const QuerySpec& query);
   /// Those of later queries.
   void add(const ModesAsked& later);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "batch/chain_json.h"
 #include "batch/query_file.h"
 #include "import/float_vertices.h"
 #include "radar/displacement.h"
@@ -17,11 +18,6 @@ namespace radar::tools {
 namespace {
 
 constexpr std::string_view kLater[] = {"rotation"};
-
-std::array<double, 3> readVector(const JsonValue& list) {
-  if (list.size() != 3) list.expected("3 numbers");
-  return {list[0].number(), list[1].number(), list[2].number()};
-}
 
 void readField(const JsonValue& value, const QueryField& field, QuerySpec& to) {
   const nlohmann::json& json = value.json();
@@ -62,6 +58,19 @@ void requireKnownKeys(const JsonValue& object, std::span<const std::string_view>
   }
 }
 
+std::array<double, 3> vectorFrom(const JsonValue& list) {
+  if (list.size() != 3) list.expected("3 numbers");
+  return {list[0].number(), list[1].number(), list[2].number()};
+}
+
+Transform poseFrom(const JsonValue& list) {
+  if (list.size() != 12) list.expected("12 numbers");
+  Transform pose;
+  for (size_t i = 0; i < 12; ++i) pose.m[i] = list[i].number();
+  if (std::string wrong = validate(pose); !wrong.empty()) list.refuse(wrong);
+  return pose;
+}
+
 std::array<double, 3> motionFrom(const JsonValue& list, size_t first) {
   std::array<double, 3> motion{};
   for (size_t k = 0; k < 3; ++k) {
@@ -74,7 +83,7 @@ std::array<double, 3> motionFrom(const JsonValue& list, size_t first) {
 Turn turnFrom(const JsonValue& value) {
   requireKnownKeys(value, {"axis", "angle", "centre"});
   const JsonValue axis = value.member("axis"), angle = value.member("angle"), centre = value.member("centre");
-  const Turn turn{readVector(axis), angle.number(), readVector(centre)};
+  const Turn turn{vectorFrom(axis), angle.number(), vectorFrom(centre)};
   if (std::abs(turn.angle) > 0x1p16) angle.expected("a number of at most 2^16");
   if (turn.angle != 0 && turn.axis == std::array<double, 3>{}) axis.expected("a vector that is not zero");
   for (size_t k = 0; k < 3; ++k) {
@@ -87,13 +96,10 @@ Turn turnFrom(const JsonValue& value) {
 void readTurnTo(const JsonValue& value, const MeshData& mesh, const std::array<double, 3>& base, QuerySpec& query) {
   requireKnownKeys(value, {"to", "about"});
   const JsonValue to = value.member("to");
-  if (to.size() != 12) to.expected("12 numbers");
-  Transform end;
-  for (size_t i = 0; i < 12; ++i) end.m[i] = to[i].number();
-  if (std::string wrong = validate(end); !wrong.empty()) to.refuse(wrong);
+  const Transform end = poseFrom(to);
   std::array<double, 3> about{};
   if (value.has("about")) {
-    about = readVector(value.member("about"));
+    about = vectorFrom(value.member("about"));
     for (size_t k = 0; k < 3; ++k) about[k] -= base[k];
   } else {
     const auto box = boundsOf(MeshView{mesh.positions, mesh.indices}, Transform{});
@@ -121,12 +127,18 @@ Instance instanceFrom(const JsonValue& list, std::span<const std::array<double, 
 }
 
 QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<const std::array<double, 3>> bases) {
-  static const std::vector<std::string_view> kKnown = [] {
-    std::vector<std::string_view> known{"id", "scene", "batch", "sensor", "dir", "D", "motion", "turn", "mode"};
-    for (const QueryField& field : queryFields()) known.emplace_back(field.name);
+  static const auto withFields = [](std::vector<std::string_view> known, bool ofChains) {
+    for (const QueryField& field : queryFields()) {
+      if (field.chain || !ofChains) known.emplace_back(field.name);
+    }
     return known;
-  }();
-  requireKnownKeys(query, kKnown);
+  };
+  static const std::vector<std::string_view> kKnown = withFields({"id", "scene", "batch", "sensor", "dir", "D",
+                                                                  "motion", "turn", "mode"},
+                                                                 false),
+                                             kOfChains = withFields(
+                                                 {"id", "scene", "batch", "chain", "from", "to", "base"}, true);
+  requireKnownKeys(query, query.has("chain") ? kOfChains : kKnown);
   QuerySpec spec;
   spec.id = query.member("id").string();
   if (!query.has("scene")) {
@@ -134,6 +146,12 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
   }
   spec.scene = query.member("scene").index(world.scenes.size(), "scenes");
   query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
+  if (query.has("chain")) {
+    readChainWay(query, world, spec);
+    readFields(query, world.objectCount(spec.scene), spec);
+    checkChainQuery(query, world, spec);
+    return spec;
+  }
   spec.setSensor(instanceFrom(query.member("sensor"), bases));
   const char* const step = query.has("motion") ? "motion" : "turn";
   if (query.has(step)) {
@@ -158,7 +176,7 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
     });
   } else {
     const JsonValue direction = query.member("dir");
-    spec.direction = readVector(direction);
+    spec.direction = vectorFrom(direction);
     if (spec.direction == std::array<double, 3>{}) direction.expected("a vector that is not zero");
     const JsonValue distance = query.member("D");
     spec.distance = distance.numberFrom0();

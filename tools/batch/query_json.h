@@ -16,6 +16,10 @@ inline void requireKnownKeys(const JsonValue& object, std::initializer_list<std:
   requireKnownKeys(object, std::span(known.begin(), known.size()));
 }
 
+/// Three numbers.
+std::array<double, 3> vectorFrom(const JsonValue& list);
+/// Twelve, of any invertible matrix.
+Transform poseFrom(const JsonValue& list);
 /// Three numbers of a list, from `first` on, that an object or a sensor may move by (radar.h).
 std::array<double, 3> motionFrom(const JsonValue& list, size_t first);
 

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "batch/binary_queries.h"
+#include "batch/chain_json.h"
 #include "batch/query_file.h"
 #include "batch/query_json.h"
 #include "batch/query_reader.h"
@@ -86,10 +87,13 @@ JsonQueryFile Reader::read() {
   fingerprint_.add(text);
   const nlohmann::json document = parseJson(name_, text);
   const JsonValue root(name_, document);
-  requireKnownKeys(root, {"format", "meshes", "scenes", "queries", "queries_file"});
+  requireKnownKeys(root, {"format", "meshes", "chains", "scenes", "queries", "queries_file"});
   const JsonValue format = root.member("format");
   if (format.string() != "cyber-radar-queries-1") format.expected("\"cyber-radar-queries-1\"");
   root.member("meshes").forEach([&](const JsonValue& mesh) { readMesh(mesh); });
+  root.ifHas("chains", [&](const JsonValue& chains) {
+    chains.forEach([&](const JsonValue& chain) { workload_.chains.push_back(chainFrom(chain, bases_)); });
+  });
   root.member("scenes").forEach([&](const JsonValue& scene) { readScene(scene); });
   JsonQueryFile result;
   if (root.has("queries_file")) {

@@ -41,6 +41,35 @@ std::string positionsFile(size_t scene, uint32_t mesh) {
   return "scene-" + std::to_string(scene) + "-mesh-" + std::to_string(mesh) + ".f32";
 }
 
+std::string poseText(const Transform& pose) {
+  return listOf(pose.m, ",", appendNumber);
+}
+
+std::string chainText(const ChainSpec& chain) {
+  const auto nameOf = [&](uint32_t link) { return quoted(chain.linkNames[link]); };
+  size_t number = 0;
+  JsonObject object;
+  object.add("links", listOf(chain.links, ",", [&](std::string& text, const Link& link) {
+               JsonObject out;
+               out.add("name", nameOf(static_cast<uint32_t>(number++)));
+               if (link.parent != kNone) out.add("parent", nameOf(link.parent));
+               out.add("origin", poseText(link.parentFromJoint));
+               if (link.joint != JointType::fixed) {
+                 out.addString("joint", link.joint == JointType::revolute ? "revolute" : "prismatic");
+                 out.add("axis", listOf(link.axis, ",", appendNumber));
+                 out.addString("variable", chain.variableNames[link.variable]);
+               }
+               out.add("meshes", listOf(link.meshes, ",", [](std::string& meshes, const LinkMesh& mesh) {
+                         meshes += instanceText({mesh.mesh, mesh.linkFromMesh});
+                       }));
+               text += out.text();
+             }));
+  object.add("pairs", listOf(chain.pairs, ",", [&](std::string& text, const std::array<uint32_t, 2>& pair) {
+               text += "[" + nameOf(pair[0]) + "," + nameOf(pair[1]) + "]";
+             }));
+  return object.text();
+}
+
 std::string sceneText(const SceneSpec& scene, size_t number, const std::string& instanceFile) {
   JsonObject object;
   if (!scene.id.empty()) object.addString("id", scene.id);
@@ -93,7 +122,14 @@ std::string queryText(const QuerySpec& query) {
   object.addString("id", query.id);
   object.add("scene", std::to_string(query.scene));
   object.add("batch", std::to_string(query.batch));
-  object.add("sensor", instanceText(query.sensor()));
+  if (query.chain) {
+    object.add("chain", std::to_string(query.chain->chain));
+    object.add("from", listOf(query.chain->from, ",", appendNumber));
+    object.add("to", listOf(query.chain->to, ",", appendNumber));
+    object.add("base", poseText(query.worldFromMesh));
+  } else {
+    object.add("sensor", instanceText(query.sensor()));
+  }
   if (query.motion) object.add("motion", listOf(*query.motion, ",", appendNumber));
   if (query.turn) {
     JsonObject turn;
@@ -106,7 +142,7 @@ std::string queryText(const QuerySpec& query) {
     object.add("dir", listOf(query.direction, ",", appendNumber));
     object.addNumber("D", query.distance);
   }
-  if (query.mode) object.addString("mode", nameOf(*query.mode));
+  if (query.mode && !query.chain) object.addString("mode", nameOf(*query.mode));
   for (const QueryField& field : queryFields()) {
     if (isGiven(query, field)) addField(object, field, query);
   }
@@ -125,6 +161,11 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
     const std::string name = "mesh-" + std::to_string(i) + ".ply";
     writeAtomically(folder / name, plyOf(workload.meshes[i]));
     text += (i > 0 ? ", " : "") + quoted(name);
+  }
+  if (!workload.chains.empty()) {
+    text += "],\n \"chains\": ";
+    text += listOf(workload.chains, ",\n  ", [](std::string& to, const ChainSpec& chain) { to += chainText(chain); });
+    text.pop_back();
   }
   text += "],\n \"scenes\": [";
   for (size_t i = 0; i < workload.scenes.size(); ++i) {

@@ -92,6 +92,7 @@ void writePage(const std::filesystem::path& file, const std::string& title, cons
   for (uint32_t i = 0; i < answers.size(); ++i) {
     if (!answers[i].reason.empty()) content.reasons[i] = answers[i].reason;
     if (!answers[i].listed.hits.empty()) content.hits[i] = answers[i].listed.hits;
+    if (!workload.chains.empty()) content.links.push_back(answers[i].links);
   }
   addSampled(content, workload, answers, options);
   writeAtomically(file, pageOf(workload, resultsOf(answers), content));

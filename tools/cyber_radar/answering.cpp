@@ -20,7 +20,7 @@ void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
 }  // namespace
 
 Answering::Answering(const Workload& world, const ModesAsked& asked, const AnsweringOptions& options)
-    : options_(options), player_(world), answerer_(player_.scene(), options) {
+    : options_(options), world_(world), player_(world), answerer_(player_.scene(), options) {
   if (options.mode == AnswerMode::sampled && !asked.exactOnly.empty()) {
     throw InputError("--mode", "", "expected contact or reference, as " + asked.exactOnly + " needs, got sampled");
   }
@@ -70,6 +70,22 @@ Answers Answering::answersOf(const Batch& batch, std::span<const QuerySpec> quer
   }
 }
 
+Answers Answering::movesOf(const Batch& batch, std::vector<Answer>& to) {
+  auto found = chains_.find(*batch.chain);
+  if (found == chains_.end()) {
+    ChainSweeper made(player_.scene(), world_.chains[*batch.chain], options_.threads);
+    found = chains_.emplace(*batch.chain, std::move(made)).first;
+  }
+  Answers answers;
+  const std::vector<ChainResult> moves = found->second.run(batch.moves);
+  for (size_t i = 0; i < moves.size(); ++i) {
+    const auto& [contact, link, mesh, otherLink, otherMesh] = moves[i];
+    answers.results.push_back(contact);
+    to[batch.numbers[i]].links = {link, mesh, otherLink, otherMesh};
+  }
+  return answers;
+}
+
 std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress& progress) {
   std::vector<Answer> answers(queries.size());
   const std::vector<Batch> batches = batchesOf(queries, options_.resolution, options_.mode);
@@ -77,12 +93,13 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
   for (const Batch& batch : batches) {
     show(batch.scene);
     const double begun = now(), computed = threadSeconds();
-    Answers found = answersOf(batch, queries);
+    Answers found = batch.chain ? movesOf(batch, answers) : answersOf(batch, queries);
     stats_.hostSeconds += threadSeconds() - computed;
     if (batch.mode == AnswerMode::reference) found.stats.stages = {{"reference", 1e3 * (now() - begun)}};
     for (size_t i = 0; i < found.results.size(); ++i) {
       const Result& result = found.results[i];
-      answers[batch.numbers[i]] = {.result = result, .mode = batch.mode};
+      answers[batch.numbers[i]].result = result;
+      answers[batch.numbers[i]].mode = batch.mode;
       ++stats_.statuses[static_cast<size_t>(result.status)];
       if (result.resolution == 0) continue;
       stats_.leastResolution = std::min(stats_.leastResolution, result.resolution);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -66,12 +67,16 @@ class Answering {
   /// Of the scene that is shown.
   void check(const Batch& batch, std::span<const QuerySpec> queries) const;
   Answers answersOf(const Batch& batch, std::span<const QuerySpec> queries);
+  /// Of a chain.
+  Answers movesOf(const Batch& batch, std::vector<Answer>& to);
 
   AnsweringOptions options_;
   AnsweringStats stats_;
   std::vector<AnswerMode> modes_;
+  const Workload& world_;
   ScenePlayer player_;
   Answerer answerer_;
+  std::map<uint32_t, ChainSweeper> chains_;
 };
 
 /// Sets up and answers all queries of a workload.

@@ -169,10 +169,11 @@ std::string countsOf(const QueryFile& queries, AnswerMode command) {
     objects += world.objectCount(scene);
     changed += !spec.masks.empty() || !spec.motions.empty() || !spec.deforms.empty();
   }
+  const std::string chains = world.chains.empty() ? "" : counted(world.chains.size(), "chain") + ", ";
   std::map<AnswerMode, uint64_t> modes;
   for (const auto& [mode, count] : queries.modes().modes) modes[mode.value_or(command)] += count;
   std::string text = counted(world.meshes.size(), "mesh", "meshes") + " of " + counted(triangles, "triangle") + ", " +
-                     counted(world.scenes.size(), "scene") + " of " + counted(objects, "object") + " (" +
+                     chains + counted(world.scenes.size(), "scene") + " of " + counted(objects, "object") + " (" +
                      std::to_string(changed) + " with masks, motions or deforms), " +
                      counted(queries.count(), "query", "queries");
   const char* separator = ": ";

@@ -47,7 +47,7 @@ Outputs RunOptions::outputs() const {
 }
 
 void RunOptions::checkFormat(const QueryFile& queries) const {
-  requireRoomForLists(out, queries.modes().listed);
+  requireRoom(out, queries.modes());
 }
 
 Part RunOptions::part(const QueryFile& queries, Answering& answering) const {

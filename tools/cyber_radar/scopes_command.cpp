@@ -81,8 +81,8 @@ void writeRaw(const std::filesystem::path& folder, const Workload& workload, con
   sidecar["right"] = scopes.right;
   sidecar["up"] = scopes.up;
   sidecar["forward"] = scopes.forward;
-  sidecar["answer"] = nlohmann::ordered_json::parse(
-      answerLine(query, {.result = scopes.result, .mode = AnswerMode::sampled}, workload.objectNames(query.scene)));
+  sidecar["answer"] = nlohmann::ordered_json::parse(answerLine(
+      query, {.result = scopes.result, .mode = AnswerMode::sampled}, {.objects = workload.objectNames(query.scene)}));
   writeAtomically(folder / "scopes.json", sidecar.dump(2) + "\n");
 }
 
@@ -91,8 +91,12 @@ void drawScopes(Options& options) {
   Workload workload = load(options);
   // The text below needs the whole answer, and the pictures are of mode sampled.
   const QuerySpec& wanted = findQuery(workload, options);
-  if (wanted.turn)
-    throw InputError(options.files[0], "turn", "expected a straight motion, along which scopes look, got a turn");
+  for (const auto& [name, isGiven] :
+       {std::pair{"turn", wanted.turn.has_value()}, {"chain", wanted.chain.has_value()}}) {
+    if (!isGiven) continue;
+    throw InputError(options.files[0], name,
+                     std::string("expected a straight motion, along which scopes look, got a ") + name);
+  }
   workload.queries = {sampledPartOf(wanted)};
   workload.queries.front().anyHit = false;
   const QuerySpec& query = workload.queries.front();

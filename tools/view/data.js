@@ -1,8 +1,9 @@
 // What the page shows, decoded: scenes, queries and their answers.
 
+import { bodiesOf, linkPose, partsOf, placedBy, product } from "./chains.js";
 import { Bounds, nearTogether } from "./extent.js";
 import { Mesh, Placed } from "./meshes.js";
-import { between, cross, lengthOf, minus, plus, times, unit } from "./vectors.js";
+import { between, lengthOf, minus, plus, times, turned } from "./vectors.js";
 
 /**
  * What page.cpp writes, of n things n numbers, or as many times as many as stated. By query: only of those that have some.
@@ -11,14 +12,16 @@ import { between, cross, lengthOf, minus, plus, times, unit } from "./vectors.js
  *   ways: Float64Array, deforms: {mesh: number, positions: Float32Array}[]}} SceneRow  ways: 3
  * @typedef {Poses & {count: number, id: string[], scene: Uint32Array, way: Float64Array, whole: Float64Array,
  *   step: Uint8Array, turns: Record<number, {axis: number[], angle: number, centre: number[]}>, ignored: Record<number, number[]>,
- *   asked: Record<number, Record<string, number | string | boolean>>}} Queries  way: 3; asked: options given
+ *   moves: Record<number, import("./chains.js").Move>, asked: Record<number, Record<string, number | string | boolean>>}} Queries
+ *   way: 3; asked: options given
  * @typedef {{status: Uint8Array, t: Float64Array, lo: Float64Array, hi: Float64Array, object: Uint32Array,
- *   tri_a: Uint32Array, tri_b: Uint32Array, point: Float64Array, normal: Float64Array, gap: Float64Array}} Answers
- *   point, normal: 3
+ *   tri_a: Uint32Array, tri_b: Uint32Array, point: Float64Array, normal: Float64Array, gap: Float64Array,
+ *   link?: Uint32Array, mesh?: Uint32Array, other_link?: Uint32Array, other_mesh?: Uint32Array}} Answers
+ *   point, normal: 3; where there are chains, links and which of their meshes
  * @typedef {{width: number, height: number, pixel: number, d: number, length: number, R: Float32Array, M: Float32Array,
  *   L: Float32Array, origin: number[], right: number[], up: number[], forward: number[]}} Scopes
  * @typedef {{title: string, notes: string[], tour: {query?: number, play?: string}[], none: number, statuses: string[],
- *   meshes: object[], scenes: SceneRow[], queries: Queries, answers: Answers,
+ *   meshes: object[], chains: import("./chains.js").Chain[], scenes: SceneRow[], queries: Queries, answers: Answers,
  *   hits: Answers & {first: Uint32Array}, left: Record<number, number[]>,
  *   reasons: Record<number, string>, others: Record<number, {words: string, t: ?number, object: number}>,
  *   scopes: Record<number, Scopes>}} Written
@@ -38,18 +41,14 @@ function decodeArray(_, value) {
   return value;
 }
 
+// What a chain without meshes shows.
+const NOTHING = new Mesh({ name: "no mesh", positions: new Float32Array(3), indices: new Uint32Array(3) });
+
 function joined(first, second) {
   const all = new first.constructor(first.length + second.length);
   all.set(first);
   all.set(second, first.length);
   return all;
-}
-
-/** A vector after a part of a turn, by O. Rodrigues. */
-function turned({ axis, angle }, vector, share) {
-  const by = share * angle, longest = Math.max(...axis.map(Math.abs)) || 1, along = unit(axis.map((x) => x / longest));
-  const across = cross(along, vector), inwards = cross(along, across);
-  return plus(vector, plus(times(Math.sin(by), across), times(2 * Math.sin(by / 2) ** 2, inwards)));
 }
 
 /** An answer to a query, or a contact that it lists. Ids are Data.none, numbers NaN, where there is none. */
@@ -73,6 +72,9 @@ export class Answer {
     this.lo = from.lo[i];
     this.hi = from.hi[i];
     this.object = from.object[i];
+    /** Of a chain: which body touches something, and which other one, if it is none of the scene's; else -1. */
+    this.body = data.bodyOf(query, from.link?.[i], from.mesh?.[i]);
+    this.otherBody = data.bodyOf(query, from.other_link?.[i], from.other_mesh?.[i]);
     this.triA = from.tri_a[i];
     this.triB = from.tri_b[i];
     this.point = [...from.point.subarray(3 * i, 3 * i + 3)];
@@ -137,6 +139,7 @@ export class Data {
     this.tour = written.tour;
     this.none = written.none;
     this.statuses = written.statuses;
+    this.chains = written.chains.map((chain) => ({ ...chain, bodies: bodiesOf(chain) }));
     this.scenes = written.scenes;
     this.queries = written.queries;
     this.hits = written.hits;
@@ -147,13 +150,15 @@ export class Data {
     this.meshes = written.meshes.map((mesh) => new Mesh(/** @type {Mesh} */ (mesh)));
     /** @type {Map<number, ReturnType<Data["makeScene"]>>} */
     this.shown = new Map();
+    // A chain's place among sensors is that of a mesh of it: the one that touches something, or the last one.
+    for (const query in this.queries.moves) this.putBody(Number(query), written.answers);
     this.sensors = new Placed((i) => this.scene(this.queries.scene[i]).meshes, this.queries);
     this.answers = Array.from({ length: this.queries.count }, (_, query) => new Answer(this, query, written.answers, query));
     /**
-     * Of each query the last that sensorAt() made.
-     * @type {Map<number, {share: number, placed: Placed, i: number, moved: number[]}>}
+     * Of each query the last that bodiesAt() made.
+     * @type {Map<number, {share: number, bodies: {placed: Placed, i: number, moved: number[]}[]}>}
      */
-    this.turnedSensors = new Map();
+    this.turnedBodies = new Map();
     /** @type {?number[]} */
     this.own = null;
     /** The latest of their times. */
@@ -193,9 +198,10 @@ export class Data {
     for (const answer of this.answers) {
       const { query, status } = answer;
       if (this.queries.scene[query] !== number) continue;
-      const path = this.path(query, 0, status === "clear" ? 0 : answer.share), place = between(path[0], path.at(-1), 0.5);
-      const reach = path.reduce((most, point) => Math.max(most, lengthOf(minus(point, place))), 0);
-      things.push({ place, radius: this.sensors.radius[query] + reach, isSensor: true });
+      const balls = this.swept(query, status === "clear" ? 0 : answer.share);
+      const place = between(balls[0].place, balls.at(-1).place, 0.5);
+      const radius = balls.reduce((most, ball) => Math.max(most, ball.radius + lengthOf(minus(ball.place, place))), 0);
+      things.push({ place, radius, isSensor: true });
     }
     const { near, far } = nearTogether(things), bounds = new Bounds(), sensors = far.filter(({ isSensor }) => isSensor).length;
     for (const { place, radius } of near) bounds.add(place, radius);
@@ -248,35 +254,95 @@ export class Data {
     const way = times(share, this.way(query)), turn = this.queries.turns[query];
     return plus(turn ? plus(turn.centre, turned(turn, minus(place, turn.centre), share)) : place, way);
   }
+  /** Of a chain, where that mesh of it is that stands among the sensors. */
   placeAt(query, share) {
-    return this.moved(query, this.sensors.centreOf(query), share);
+    const move = this.queries.moves[query];
+    if (!move) return this.moved(query, this.sensors.centreOf(query), share);
+    const chain = this.chains[move.chain], body = chain.bodies[this.shownBody(query)];
+    if (!body) return placedBy(move.base, [0, 0, 0]);
+    return placedBy(product(linkPose(chain, move, share, body.link), body.pose), this.sensors.meshOf(query).middle);
   }
   /** Points of its way from a part to another, joined by lines. */
   path(query, from, to) {
-    const turn = this.queries.turns[query];
-    const parts = turn ? Math.min(Math.max(2, Math.ceil(5 * Math.abs(turn.angle * (to - from)))), 400) : 1;
+    const turn = this.queries.turns[query], move = this.queries.moves[query];
+    let parts = turn ? Math.min(Math.max(2, Math.ceil(5 * Math.abs(turn.angle * (to - from)))), 400) : 1;
+    if (move) parts = partsOf(this.chains[move.chain], move, to - from);
     return Array.from({ length: parts + 1 }, (_, i) => this.placeAt(query, from + (i / parts) * (to - from)));
+  }
+  /** Balls around its meshes, at places of its way up to a part. */
+  swept(query, share) {
+    const move = this.queries.moves[query];
+    if (!move) return this.path(query, 0, share).map((place) => ({ place, radius: this.sensors.radius[query] }));
+    const bodies = [0, 0.25, 0.5, 0.75, 1].flatMap((part) => this.bodiesAt(query, part * share));
+    const balls = bodies.map(({ placed, i }) => ({ place: placed.centreOf(i), radius: placed.radius[i] }));
+    return [{ place: placedBy(move.base, [0, 0, 0]), radius: 0 }, ...balls];
   }
   /** Where it goes from there. */
   heading(query, share) {
     const h = 1e-4;
-    return this.queries.turns[query] ? minus(this.placeAt(query, share + h), this.placeAt(query, share - h)) : this.way(query);
+    const bends = this.queries.turns[query] || this.queries.moves[query];
+    return bends ? minus(this.placeAt(query, share + h), this.placeAt(query, share - h)) : this.way(query);
   }
-  /** What is placed, its number there, and how far it has moved from there. */
-  sensorAt(query, share) {
+  /** What moves: one sensor, or a chain's meshes. Of each what is placed, its number there, and how far it has moved. */
+  bodiesAt(query, share) {
+    const { sensors } = this, turn = this.queries.turns[query], move = this.queries.moves[query], rest = [0, 0, 0];
+    if (!move && (!turn || share === 0)) return [{ placed: sensors, i: query, moved: times(share, this.way(query)) }];
+    const last = this.turnedBodies.get(query);
+    if (last?.share === share) return last.bodies;
+    const poses = move ? this.posesOf(move, share) : this.turnedPose(query, share);
+    const placed = new Placed(() => sensors.meshesOf(query), poses);
+    const bodies = Array.from({ length: placed.count }, (_, i) => ({ placed, i, moved: rest }));
+    this.turnedBodies.set(query, { share, bodies });
+    return bodies;
+  }
+  turnedPose(query, share) {
     const { sensors } = this, turn = this.queries.turns[query];
-    if (!turn || share === 0) return { placed: sensors, i: query, moved: times(share, this.way(query)) };
-    const last = this.turnedSensors.get(query);
-    if (last?.share === share) return last;
     const linear = new Float32Array(9), mesh = sensors.mesh.subarray(query, query + 1);
     for (let column = 0; column < 3; ++column) {
       const axis = [0, 1, 2].map((k) => sensors.linear[9 * query + 3 * k + column]);
       turned(turn, axis, share).forEach((value, k) => (linear[3 * k + column] = value));
     }
-    const at = new Float64Array(this.moved(query, sensors.at.subarray(3 * query, 3 * query + 3), share));
-    const placed = new Placed(() => sensors.meshesOf(query), { mesh, linear, at });
-    const found = { share, placed, i: 0, moved: [0, 0, 0] };
-    this.turnedSensors.set(query, found);
-    return found;
+    return { mesh, linear, at: new Float64Array(this.moved(query, sensors.at.subarray(3 * query, 3 * query + 3), share)) };
+  }
+
+  // Chains
+
+  /** Of all meshes of a chain. */
+  posesOf(/** @type {import("./chains.js").Move} */ move, share) {
+    const chain = this.chains[move.chain], of = chain.links.map((_, link) => linkPose(chain, move, share, link));
+    const poses = chain.bodies.map(({ link, pose }) => product(of[link], pose));
+    return {
+      mesh: new Uint32Array(chain.bodies.map(({ mesh }) => mesh)),
+      linear: new Float32Array(poses.flatMap((pose) => pose.filter((_, k) => k % 4 < 3))),
+      at: new Float64Array(poses.flatMap((pose) => pose.filter((_, k) => k % 4 === 3))),
+    };
+  }
+  /** A mesh of a link among all of its chain; -1: none. */
+  bodyOf(query, link, mesh) {
+    const move = this.queries.moves[query];
+    return move ? this.chains[move.chain].bodies.findIndex((body) => body.link === link && body.number === mesh) : -1;
+  }
+  /** The one that stands among the sensors. */
+  shownBody(query) {
+    const { body } = this.answers[query];
+    return body < 0 ? this.chains[this.queries.moves[query].chain].bodies.length - 1 : body;
+  }
+  /** Its name, or none. */
+  linkName(query, body) {
+    const chain = body < 0 ? null : this.chains[this.queries.moves[query].chain];
+    return chain ? chain.links[chain.bodies[body].link].name : "";
+  }
+  putBody(query, /** @type {Answers} */ { link, mesh }) {
+    const { queries } = this, move = queries.moves[query], poses = this.posesOf(move, 0);
+    const found = this.bodyOf(query, link[query], mesh[query]), body = found < 0 ? poses.mesh.length - 1 : found;
+    if (body < 0) {
+      queries.mesh[query] = this.meshes.push(NOTHING) - 1;
+      queries.linear.set([1, 0, 0, 0, 1, 0, 0, 0, 1], 9 * query);
+      queries.at.set([3, 7, 11].map((k) => move.base[k]), 3 * query);
+      return;
+    }
+    queries.mesh[query] = poses.mesh[body];
+    queries.linear.set(poses.linear.subarray(9 * body, 9 * body + 9), 9 * query);
+    queries.at.set(poses.at.subarray(3 * body, 3 * body + 3), 3 * query);
   }
 }

@@ -35,7 +35,7 @@ bool isSheared(const Transform& pose) {
 }
 
 /// The part of the way that a sensor can go, 0 to 1; of a hit that only says whether (Query::anyHit), 0.
-double shareOf(const Query& query, const Result& answer) {
+double shareOf(const QuerySpec& query, const Result& answer) {
   if (answer.status == Status::clear) return 1;
   if (query.anyHit && answer.status == Status::hit) return 0;
   const double whole = takesStep(query) ? 1 : query.distance;
@@ -192,13 +192,18 @@ class Writer {
     const Transform& pose = instance.worldFromMesh;
     const bool isBaked = isSheared(pose);
     node.mesh = addMesh(scene, instance.mesh, material, isBaked ? &pose : nullptr);
-    if (!isBaked) {
-      for (size_t column = 0; column < 4; ++column) {  // glTF's matrices go by columns
-        for (size_t row = 0; row < 3; ++row) node.matrix.push_back(pose.m[4 * row + column]);
-        node.matrix.push_back(column == 3 ? 1 : 0);
-      }
-    }
+    if (!isBaked) node.matrix = matrixOf(pose);
     return addNode(std::move(node));
+  }
+
+  /// By columns.
+  static std::vector<double> matrixOf(const Transform& pose) {
+    std::vector<double> matrix;
+    for (size_t column = 0; column < 4; ++column) {
+      for (size_t row = 0; row < 3; ++row) matrix.push_back(pose.m[4 * row + column]);
+      matrix.push_back(column == 3 ? 1 : 0);
+    }
+    return matrix;
   }
 
   /// Lets a node go through values, a vector or quaternion at each of the times.
@@ -225,12 +230,31 @@ class Writer {
     node.children = {child};
     node.translation = {from[0], from[1], from[2]};
     const int number = addNode(std::move(node));
+    move(number, from, share * way, share, animation);
+    return number;
+  }
+
+  void move(int node, const Vec3& from, const Vec3& by, double share, tinygltf::Animation& animation) {
     std::vector<float> places;
-    for (const Vec3& place : {from, from + share * way}) {
+    for (const Vec3& place : {from, from + by}) {
       for (const double value : place) places.push_back(static_cast<float>(value));
     }
-    animate(number, "translation", {0, arrivalOf(share)}, places, animation);
-    return number;
+    animate(node, "translation", {0, arrivalOf(share)}, places, animation);
+  }
+
+  /// In the time of a way to `share` of it, from an angle on and by another one.
+  void turn(int node, const Vec3& axis, double from, double by, double share, tinygltf::Animation& animation) {
+    // Between two keys it turns by less than half a turn, or players would take the shorter way.
+    const auto keys = static_cast<size_t>(std::ceil(std::abs(by))) + 1;
+    const Vec3 along = unitOf(axis);
+    std::vector<float> times, rotations;
+    for (size_t i = 0; i <= keys; ++i) {
+      const double part = double(i) / double(keys), half = 0.5 * (from + part * by);
+      times.push_back(static_cast<float>(part) * arrivalOf(share));
+      for (const double value : along) rotations.push_back(static_cast<float>(std::sin(half) * value));
+      rotations.push_back(static_cast<float>(std::cos(half)));
+    }
+    animate(node, "rotation", times, rotations, animation);
   }
 
   /// The same, turning.
@@ -240,18 +264,54 @@ class Writer {
     arm.children = {child};
     arm.translation = {-turn.centre[0], -turn.centre[1], -turn.centre[2]};
     const int number = addMoving(name, addNode(std::move(arm)), way, share, animation, turn.centre);
-    // Between two keys it turns by less than half a turn, or players would take the shorter way.
-    const auto keys = static_cast<size_t>(std::ceil(std::abs(share * turn.angle))) + 1;
-    const Vec3 axis = unitOf(turn.axis);
-    std::vector<float> times, rotations;
-    for (size_t i = 0; i <= keys; ++i) {
-      const double part = double(i) / double(keys), half = 0.5 * part * share * turn.angle;
-      times.push_back(static_cast<float>(part) * arrivalOf(share));
-      for (const double value : axis) rotations.push_back(static_cast<float>(std::sin(half) * value));
-      rotations.push_back(static_cast<float>(std::cos(half)));
-    }
-    animate(number, "rotation", times, rotations, animation);
+    this->turn(number, turn.axis, 0, share * turn.angle, share, animation);
     return number;
+  }
+
+  /// A chain on its base: nodes within nodes, of which those of joints move.
+  int addChain(const std::string& name, const QuerySpec& query, size_t material, double share,
+               tinygltf::Animation& animation) {
+    const ChainSpec& chain = workload_.chains[query.chain->chain];
+    tinygltf::Node root;
+    root.name = name;
+    root.matrix = matrixOf(query.worldFromMesh);
+    const int base = addNode(std::move(root));
+    std::vector<int> joints;
+    const auto addTo = [&](int parent, int child) {
+      model_.nodes[static_cast<size_t>(parent)].children.push_back(child);
+    };
+    for (size_t i = 0; i < chain.links.size(); ++i) {
+      const Link& link = chain.links[i];
+      tinygltf::Node origin, joint;
+      origin.matrix = matrixOf(link.parentFromJoint);
+      joint.name = query.id + " " + chain.linkNames[i];
+      const std::string placed = joint.name + " mesh ";
+      const int stand = addNode(std::move(origin)), moving = addNode(std::move(joint));
+      addTo(link.parent == kNone ? base : joints[link.parent], stand);
+      addTo(stand, moving);
+      joints.push_back(moving);
+      if (link.joint != JointType::fixed) {
+        const double from = query.chain->from[link.variable], by = share * (query.chain->to[link.variable] - from);
+        if (link.joint == JointType::revolute) {
+          turn(moving, link.axis, from, by, share, animation);
+        } else {
+          move(moving, from * unitOf(link.axis), by * unitOf(link.axis), share, animation);
+        }
+      }
+      for (size_t k = 0; k < link.meshes.size(); ++k) {
+        const auto& [mesh, pose] = link.meshes[k];
+        addTo(moving, addPlaced(placed + std::to_string(k), query.scene, {mesh, pose}, material));
+      }
+    }
+    return base;
+  }
+
+  int addMoved(const std::string& name, const QuerySpec& query, size_t material, double share,
+               tinygltf::Animation& animation) {
+    if (query.chain) return addChain(name, query, material, share, animation);
+    const int body = addPlaced(query.id, query.scene, query.sensor(), material);
+    return query.turn ? addTurning(name, body, *query.turn, displacementOf(query), share, animation)
+                      : addMoving(name, body, displacementOf(query), share, animation);
   }
 
   /// Numbers of a scene's objects, its base's included, as far as there is room.
@@ -293,11 +353,7 @@ class Writer {
     const auto left = left_.find(static_cast<uint32_t>(i));
     const bool isPart = answer.status == Status::clear && left != left_.end();
     const size_t material = isPart ? model_.materials.size() - 1 : 1 + static_cast<size_t>(answer.status);
-    const int body = addPlaced(query.id, query.scene, query.sensor(), material);
-    const std::string sensor = "sensor " + query.id;
-    const double share = shareOf(query, answer);
-    const int node = query.turn ? addTurning(sensor, body, *query.turn, displacementOf(query), share, animation)
-                                : addMoving(sensor, body, displacementOf(query), share, animation);
+    const int node = addMoved("sensor " + query.id, query, material, shareOf(query, answer), animation);
     tinygltf::Value::Object extras{{"status", tinygltf::Value(model_.materials[material].name)}};
     const auto add = [&](const char* name, double value) {
       if (std::isfinite(value)) extras.insert({name, tinygltf::Value(value)});

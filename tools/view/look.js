@@ -106,9 +106,11 @@ export class Look {
     const colour = this.colourOf(query), isPale = chosen >= 0 && !isChosen;
     if (isChosen) this.explain(stage, this.answer);
     if (kind !== "invalid") {
-      const { placed, i, moved } = data.sensorAt(query, this.gone(query)), isSeen = isChosen && !hasPoint;
-      if (seen && !isSeen && stage.hides(placed, i, moved, seen)) stage.glass(placed, i, moved, colour, isChosen);
-      else stage.add(placed, i, moved, isPale ? between(colour, [0.9, 0.9, 0.92], 0.4) : colour, this.numberOf(query));
+      const isSeen = isChosen && !hasPoint, shade = isPale ? between(colour, [0.9, 0.9, 0.92], 0.4) : colour;
+      for (const { placed, i, moved } of data.bodiesAt(query, this.gone(query))) {
+        if (seen && !isSeen && stage.hides(placed, i, moved, seen)) stage.glass(placed, i, moved, colour, isChosen);
+        else stage.add(placed, i, moved, shade, this.numberOf(query));
+      }
     }
     if (crowd < Math.sqrt(150 / 2000) && !isChosen) return;
     const path = data.path(query, 0, saysOnlyWhether ? 1 : share);
@@ -125,7 +127,9 @@ export class Look {
   explain(stage, /** @type {Answer} */ answer) {
     const { data, chosen } = this, { sensors } = data;
     const { share, saysOnlyWhether: whether, otherShare: other } = answer;
-    if (share > 0) stage.glass(sensors, chosen, [0, 0, 0], COLOURS[answer.kind], true);
+    for (const { placed, i, moved } of share > 0 ? data.bodiesAt(chosen, 0) : []) {
+      stage.glass(placed, i, moved, COLOURS[answer.kind], true);
+    }
     const at = (part) => data.placeAt(chosen, part);
     if (!whether) stage.path(data.path(chosen, share, Math.max(share, data.shareInReach(chosen))), [...COLOURS.path, 0.5], 1.5, 4);
     for (const t of whether ? [] : [answer.lo, answer.hi]) {
@@ -137,7 +141,7 @@ export class Look {
     for (const contact of data.answers[chosen].contacts) stage.mark(at(contact.share), COLOURS.listed, 9, "ring");
     this.explainContact(stage, answer);
     if (other !== null && Math.abs(other - share) > 1e-3) {
-      const { placed, i, moved } = data.sensorAt(chosen, other);
+      const [{ placed, i, moved }] = data.bodiesAt(chosen, other);
       stage.glass(placed, i, moved, COLOURS.path, false);
       stage.mark(at(other), COLOURS.path, 13, "ring");
     }
@@ -147,19 +151,20 @@ export class Look {
     }
   }
 
-  explainContact(stage, /** @type {Answer} */ { object: number, triA, triB, share, point, hasPoint, normal, hasNormal, gap }) {
+  explainContact(stage, /** @type {Answer} */ answer) {
+    const { triA, triB, share, point, hasPoint, normal, hasNormal, gap } = answer;
     const { data, chosen } = this, { sensors } = data, { objects, place: places, ways } = data.scene(this.scene);
-    const object = places.get(number);
-    if (object === undefined) return;
-    const place = (placed, i, triangle, moved) =>
-      placed.meshOf(i).corners(triangle).map((corner) => plus(placed.toWorld(i, corner), moved));
-    const moved = ways.has(object) ? times(share, ways.get(object)) : [0, 0, 0];
-    // A mesh of which the page has only the box has other triangles.
-    const has = (placed, i, triangle) => triangle !== data.none && !placed.meshOf(i).isBox;
+    const object = places.get(answer.object), bodies = data.bodiesAt(chosen, share), own = bodies[Math.max(answer.body, 0)];
+    const way = ways.get(object), moved = way ? times(share, way) : [0, 0, 0];
+    const other = object === undefined ? bodies[answer.otherBody] : { placed: objects, i: object, moved };
+    if (!other || !own) return;
     const triangles = [];
-    const sensor = data.sensorAt(chosen, share);
-    if (has(sensors, chosen, triA)) triangles.push(place(sensor.placed, sensor.i, triA, sensor.moved));
-    if (has(objects, object, triB)) triangles.push(place(objects, object, triB, moved));
+    for (const [body, triangle] of /** @type {const} */ ([[own, triA], [other, triB]])) {
+      const mesh = body.placed.meshOf(body.i);
+      // A mesh of which the page has only the box has other triangles.
+      if (triangle === data.none || mesh.isBox) continue;
+      triangles.push(mesh.corners(triangle).map((corner) => plus(body.placed.toWorld(body.i, corner), body.moved)));
+    }
     for (const corners of triangles) {
       stage.triangle(corners, COLOURS.triangle);
       for (let k = 0; k < 3; ++k) stage.line(corners[k], corners[(k + 1) % 3], COLOURS.path, 2);

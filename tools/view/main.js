@@ -102,16 +102,16 @@ class Page {
     for (let i = 0; i < objects.count; ++i) add(objects.centreOf(i), objects.radius[i]);
     for (let i = 0; i < data.queries.count; ++i) {
       if (data.queries.scene[i] !== look.scene) continue;
-      for (const place of data.path(i, 0, data.answers[i].share)) add(place, data.sensors.radius[i]);
+      for (const { place, radius } of data.swept(i, data.answers[i].share)) add(place, radius);
     }
     this.lookAt(bounds, smooth);
   }
   flyTo(query) {
-    const { data } = this, radius = data.sensors.radius[query];
+    const { data } = this;
     const bounds = new Bounds(), { objects, place } = data.scene(data.queries.scene[query]), answer = this.look.answerTo(query);
     const listed = answer.isListed ? [] : answer.contacts;
     const farthest = Math.max(answer.share, answer.otherShare ?? 0, ...listed.map((contact) => contact.share));
-    for (const place of data.path(query, 0, farthest)) bounds.add(place, radius);
+    for (const { place, radius } of data.swept(query, farthest)) bounds.add(place, radius);
     // What it meets, or what was left out, if it is not much larger.
     const most = bounds.diagonal;
     for (const object of [answer.touched, ...listed.map((contact) => contact.object), ...(data.left[query] ?? [])]) {

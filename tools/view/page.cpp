@@ -124,6 +124,24 @@ Json sceneJson(const Workload& workload, uint32_t number, Cut& cut) {
   return json;
 }
 
+Json chainJson(const ChainSpec& chain) {
+  static constexpr const char* kJoints[] = {"fixed", "revolute", "prismatic"};
+  Json links = Json::array();
+  for (size_t i = 0; i < chain.links.size(); ++i) {
+    const Link& link = chain.links[i];
+    Json meshes = Json::array();
+    for (const LinkMesh& mesh : link.meshes) meshes.push_back({{"mesh", mesh.mesh}, {"pose", mesh.linkFromMesh.m}});
+    links.push_back({{"name", chain.linkNames[i]},
+                     {"parent", link.parent == kNone ? Json(nullptr) : Json(link.parent)},
+                     {"origin", link.parentFromJoint.m},
+                     {"joint", kJoints[static_cast<size_t>(link.joint)]},
+                     {"axis", link.axis},
+                     {"variable", link.variable},
+                     {"meshes", std::move(meshes)}});
+  }
+  return {{"links", std::move(links)}};
+}
+
 /// Objects that take no part in a query: excluded, or without a bit of its mask.
 std::vector<uint32_t> ignoredBy(const QuerySpec& query, const SceneSpec& scene) {
   std::vector<uint32_t> ignored = query.exclude;
@@ -153,15 +171,18 @@ Json askedJson(const QuerySpec& query) {
 
 Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   Poses poses;
-  Json ignored = Json::object(), asked = Json::object(), turns = Json::object();
+  Json ignored = Json::object(), asked = Json::object(), turns = Json::object(), moves = Json::object();
   Json ids = Json::array();
   std::vector<uint32_t> scenes;
   std::vector<double> ways, wholes;
   std::vector<uint8_t> steps;
   for (const QuerySpec& query : queries) {
-    const std::array<double, 3> way = displacementOf(query);
+    const std::array<double, 3> way = query.chain ? std::array<double, 3>{} : displacementOf(query);
     const std::string number = std::to_string(scenes.size());
     poses.add(query.mesh, query.worldFromMesh);
+    if (const std::optional<ChainWay>& way = query.chain) {
+      moves[number] = {{"chain", way->chain}, {"from", way->from}, {"to", way->to}, {"base", query.worldFromMesh.m}};
+    }
     ids.push_back(query.id);
     scenes.push_back(query.scene);
     ways.insert(ways.end(), way.begin(), way.end());
@@ -182,20 +203,22 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   json["whole"] = array(wholes);
   json["step"] = array(steps);
   json["turns"] = std::move(turns);
+  json["moves"] = std::move(moves);
   json["asked"] = std::move(asked);
   json["ignored"] = std::move(ignored);
   return json;
 }
 
 /// By member. Of a step, times are fractions.
-Json answersJson(std::span<const Result> answers) {
+Json answersJson(std::span<const Result> answers, std::span<const LinksMet> links = {}) {
   const Query unasked;
   Json json = Json::object();
   for (const AnswerField& field : answerFields()) {
-    if (!field.page) continue;
+    if (!field.page || (field.line == When::chain && links.empty())) continue;
     std::vector<double> values;
-    for (const Result& answer : answers) {
-      const AnswerRow row(unasked, answer, AnswerMode::contact);
+    for (size_t i = 0; i < answers.size(); ++i) {
+      const std::optional<LinksMet> met = links.empty() ? std::nullopt : std::optional(links[i]);
+      const AnswerRow row(unasked, answers[i], AnswerMode::contact, {}, 0, met);
       for (size_t part = 0; part < field.width; ++part) values.push_back(field.value(row, part));
     }
     if (field.isReal()) {
@@ -265,10 +288,12 @@ std::string pageOf(const Workload& workload, std::span<const Result> answers, co
     if (cut.isBoxed(i)) box = boxOf(mesh);
     json["meshes"].push_back(meshJson(mesh, box ? &*box : nullptr));
   }
+  json["chains"] = Json::array();
+  for (const ChainSpec& chain : workload.chains) json["chains"].push_back(chainJson(chain));
   json["scenes"] = Json::array();
   for (uint32_t i = 0; i < workload.scenes.size(); ++i) json["scenes"].push_back(sceneJson(workload, i, cut));
   json["queries"] = queriesJson(workload, std::span(workload.queries).first(count));
-  json["answers"] = answersJson(answers.first(count));
+  json["answers"] = answersJson(answers.first(count), content.links);
   json["hits"] = hitsJson(content.hits, count, cut.listing());
   json["left"] = byQuery(content.left, count, [](const std::vector<uint32_t>& objects) { return objects; });
   json["reasons"] = byQuery(content.reasons, count, asItIs);

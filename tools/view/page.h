@@ -24,6 +24,7 @@ struct PageContent {
   std::map<uint32_t, std::string> reasons;  ///< by query: why it is invalid
   LeftOut left;
   ListedHits hits;
+  std::vector<LinksMet> links;             ///< of each query, if there are chains
   std::map<uint32_t, OtherAnswer> others;  ///< by query
   std::map<uint32_t, Scopes> scopes;       ///< by query
   /// What plays when the page is opened: a query, from its start to its contact, and then all at once.

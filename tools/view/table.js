@@ -24,8 +24,8 @@ export const COLUMNS = [
   { name: "hi − lo", isNumber: true, value: ({ width }) => width, text: ({ width }) => inDigits(width, 2) },
   {
     name: "object", isNumber: true, value: ({ object }) => object,
-    text: ({ data, query, object, contacts }) => {
-      if (object === data.none) return "";
+    text: ({ data, query, object, otherBody, contacts }) => {
+      if (object === data.none) return data.linkName(query, otherBody);
       const name = data.nameOf(data.queries.scene[query], object), others = contacts.length - 1;
       return `${object}${name ? ` (${name})` : ""}${others > 0 ? ` + ${others}` : ""}`;
     },

@@ -9,6 +9,13 @@ export const lengthOf = (a) => Math.hypot(a[0], a[1], a[2]);
 export const unit = (a) => times(1 / (lengthOf(a) || 1), a);
 export const between = (a, b, share) => plus(a, times(share, minus(b, a)));
 
+/** A vector after a part of a turn, by O. Rodrigues. */
+export function turned({ axis, angle }, vector, share) {
+  const by = share * angle, longest = Math.max(...axis.map(Math.abs)) || 1, along = unit(axis.map((x) => x / longest));
+  const across = cross(along, vector), inwards = cross(along, across);
+  return plus(vector, plus(times(Math.sin(by), across), times(2 * Math.sin(by / 2) ** 2, inwards)));
+}
+
 /** An orbit around a target, seen in perspective; z is up. */
 export class Camera {
   target = [0, 0, 0];

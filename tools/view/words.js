@@ -14,6 +14,11 @@ export function sizeInWords(/** @type {string} */ what, /** @type {import("./mes
   return `${what}: ${mesh.name}, ${mesh.triangles} triangles, ${sides}`;
 }
 
+function chainInWords(data, { links, bodies }) {
+  const triangles = bodies.reduce((sum, { mesh }) => sum + data.meshes[mesh].triangles, 0);
+  return `Chain: ${links.length} links, ${bodies.length} meshes, ${triangles} triangles`;
+}
+
 /** "object 1 (lid), object 2 (box) and 3 others" */
 function listed(data, scene, objects) {
   const shown = objects.slice(0, 5).map((object) => data.called(scene, object)), others = objects.length - shown.length;
@@ -23,7 +28,7 @@ function listed(data, scene, objects) {
 const precisely = (value) => inDigits(value, 9);
 
 /** Sentences by what counts as contact: with what a query leaves, near, or touching. */
-function sentencesOf({ leaves, clearance, gap }, { what, time, within, other }) {
+function sentencesOf({ leaves, clearance, gap }, { it, what, time, within, other }) {
   const near = precisely(clearance), touching = `Touches ${what} where it starts.`;
   if (leaves) {
     return {
@@ -35,7 +40,8 @@ function sentencesOf({ leaves, clearance, gap }, { what, time, within, other }) 
   }
   if (clearance > 0) {
     return {
-      whether: `Comes within ${near} of something ${within}.`, hit: `Comes within ${near} of ${what} after ${time}.`,
+      whether: `Comes within ${near} of something ${within}.`, hit: it === "it" ? `Comes within ${near} of ${what} after ${time}.`
+        : `Free for ${time}, then ${it} comes within ${near} of ${what}.`,
       listed: `Comes within ${near} of ${what} after ${time}, if nothing stops it before.`,
       clear: `Comes within ${near} of nothing${other}, ${within}.`,
       overlap: gap === 0 ? touching : `Is within ${near} of ${what} at the start already.`,
@@ -43,7 +49,7 @@ function sentencesOf({ leaves, clearance, gap }, { what, time, within, other }) 
     };
   }
   return {
-    whether: `Touches something ${within}.`, hit: `Free for ${time}, then it touches ${what}.`,
+    whether: `Touches something ${within}.`, hit: `Free for ${time}, then ${it} touches ${what}.`,
     listed: `Touches ${what} after ${time}, if nothing stops it before.`,
     clear: `Touches nothing${other} ${within}.`, overlap: touching,
     undecided: `Free for ${time}; contact after that is possible.`,
@@ -52,10 +58,12 @@ function sentencesOf({ leaves, clearance, gap }, { what, time, within, other }) 
 
 /** The answer itself, in a sentence or two. */
 function answerInWords(/** @type {Answer} */ answer) {
-  const { data, query, object, status } = answer, { queries } = data, step = queries.step[query];
+  const { data, query, object, status, body, otherBody } = answer, { queries } = data, step = queries.step[query];
+  const link = data.linkName(query, body), other = data.linkName(query, otherBody);
   const time = precisely(status === "undecided" ? answer.lo : answer.t);
   const sentences = sentencesOf(answer, {
-    what: object === data.none ? "something" : data.called(queries.scene[query], object),
+    it: link ? `its link ${link}` : "it",
+    what: other ? `its link ${other}` : object === data.none ? "something" : data.called(queries.scene[query], object),
     time: step ? `${time} of the step` : time,
     within: step ? "during the step" : `within ${precisely(queries.whole[query])}`,
     other: data.left[query] ? " else" : "",
@@ -84,7 +92,7 @@ export function inWords(/** @type {Answer} */ answer) {
       : "It may leave what it rests on, or slide along it (ignore_leaving).");
   }
   const turn = data.queries.turns[query], vector = (numbers) => `(${numbers.map((x) => inDigits(x)).join(", ")})`;
-  if (turn && answer.status !== "invalid") {
+  if (turn?.angle && answer.status !== "invalid") {
     const degrees = inDigits((turn.angle * 180) / Math.PI, 4);
     lines.push(`It turns by ${degrees}° about ${vector(turn.axis)} through ${vector(turn.centre)}.`);
   }
@@ -94,15 +102,20 @@ export function inWords(/** @type {Answer} */ answer) {
     const isClose = precisely(lo) === precisely(hi);
     lines.push(isClose ? `The bracket is ${inDigits(hi - lo, 2)} wide.` : `The bracket: ${precisely(lo)} to ${precisely(hi)}.`);
   }
+  const link = data.linkName(query, answer.body), other = data.linkName(query, answer.otherBody);
   if (triA !== data.none) {
-    lines.push(hasGap ? `The nearest points lie on its triangle ${triA} and on the object's triangle ${triB} (yellow).`
-      : `Its triangle ${triA} meets the object's triangle ${triB} (yellow).`);
+    const own = link ? `triangle ${triA} of its link ${link}` : `its triangle ${triA}`;
+    const touched = other ? `triangle ${triB} of its link ${other}` : `the object's triangle ${triB}`;
+    lines.push(hasGap ? `The nearest points lie on ${own} and on ${touched} (yellow).`
+      : `${own[0].toUpperCase()}${own.slice(1)} meets ${touched} (yellow).`);
   }
   const listedNumbers = (numbers) => numbers.map((x) => inDigits(x)).join(", ");
   if (answer.hasPoint) lines.push(`${hasGap ? "the object's nearest point" : "point"} ${listedNumbers(answer.point)}`);
   if (answer.hasNormal) lines.push(`normal ${listedNumbers(answer.normal)}`);
   if (data.others[query]) lines.push(data.others[query].words);
-  lines.push(sizeInWords("Sensor", data.sensors.meshOf(query)));
+  const move = data.queries.moves[query];
+  if (move) lines.push(chainInWords(data, data.chains[move.chain]));
+  else lines.push(sizeInWords("Sensor", data.sensors.meshOf(query)));
   const ignored = data.queries.ignored[query];
   if (ignored) lines.push(`Takes no account of ${listed(data, scene, ignored)} (like glass).`);
   if (data.queries.asked[query]) lines.push(`Options: ${askedInWords(answer)}.`);

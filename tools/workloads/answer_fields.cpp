@@ -47,6 +47,11 @@ double timeOf(const AnswerRow& row, size_t) {
   return row.result.status == Status::undecided ? kNull : row.result.*member;
 }
 
+template <uint32_t LinksMet::*member>
+double linkOf(const AnswerRow& row, size_t) {
+  return !row.links || *row.links.*member == kNone ? kNull : *row.links.*member;
+}
+
 template <auto member>
 void set(Result& to, double value, size_t part) {
   if (std::isnan(value)) return;
@@ -78,6 +83,7 @@ template <auto member>
 constexpr AnswerAccess kIdOf{idOf<member>, set<member>};
 template <auto member>
 constexpr AnswerAccess kTime{timeOf<member>, set<member>};
+constexpr AnswerPlaces kOfChain{When::chain, When::never, When::never, true};
 constexpr AnswerPlaces kOfAnswer{When::always, When::never, When::always},
     kOfContact{When::always, When::always, When::always, true};
 constexpr size_t kNowhere = ~size_t{0};
@@ -92,24 +98,24 @@ constexpr AnswerField kFields[] = {
      "In records only: the query's index."},
     {{{"status"}, kStatus, kMember<&Result::status>, {When::always, When::never, When::always, true}, 152},
      "`hit`: hi <= D. `clear`: certainly no contact within D. `overlap`: the surfaces certainly meet at the start (t = "
-     "lo = hi = 0). `undecided`, in mode `sampled`, with a `clearance` or a `turn`: hi is null, lo <= D. `invalid`: "
-     "not answered, with a `reason`."},
+     "lo = hi = 0). `undecided`, in mode `sampled`, with a `clearance`, a `turn` or a `chain`: hi is null, lo <= "
+     "D. `invalid`: not answered, with a `reason`."},
     {{{"t"}, kReal, kTime<&Result::t>, kOfContact, 8, "fraction"},
      "How far it is to first contact: t*, rounded; in mode `sampled` and with `any_hit`, `hi`; with a "
-     "`clearance` or a `turn`, `lo`. Null for `clear` and `undecided`."},
+     "`clearance`, a `turn` or a `chain`, `lo`. Null for `clear` and `undecided`."},
     {{{"lo"}, kReal, kMember<&Result::lo>, kOfContact, 16, "fraction_lo"}, "No contact before this."},
     {{{"hi"}, kReal, kMember<&Result::hi>, kOfContact, 24, "fraction_hi"},
      "t* lies in [lo, hi], certainly. Null: t* is at least lo *or does not exist*. Contact exactly at D has t = hi = "
      "D."},
     {{{"fraction"}, kReal, kTime<&Result::fraction>, {When::always, When::step, When::always}, 32},
-     "t / D, or of the step. With `motion`, t, lo and hi are fractions times the motion's length; with `turn`, "
-     "fractions."},
+     "t / D, or of the step. With `motion`, t, lo and hi are fractions times the motion's length; with `turn` or "
+     "`chain`, fractions."},
     {{{"fraction_lo"},
       kReal,
       {[](const AnswerRow& row, size_t) { return row.fractionLo; }},
       {When::step, When::step, When::never},
       40},
-     "With `motion` or `turn`: the bracket of the fraction."},
+     "With `motion`, `turn` or `chain`: the bracket of the fraction."},
     {{{"fraction_hi"},
       kReal,
       {[](const AnswerRow& row, size_t) { return row.fractionHi; }},
@@ -125,10 +131,19 @@ constexpr AnswerField kFields[] = {
     {{{"detected"}, kTruth, kMember<&Result::detected>, kOfAnswer, 156},
      "The paper's first step: whether some surface lies in the target volume (in mode `sampled`: at any pixel's "
      "centre). Null: not determined."},
+    {{{"link"}, kId, {linkOf<&LinksMet::link>}, kOfChain, kNowhere},
+     "Of a [chain](#chains): the number of its link that touches something; a line has its `link_name`, too. Not in "
+     "records."},
+    {{{"mesh"}, kId, {linkOf<&LinksMet::mesh>}, kOfChain, kNowhere}, "Which of that link's meshes."},
     {{{"object"}, kId, kIdOf<&Result::object>, kOfContact, 120},
      "The object touched. Among pairs of equal t, the least (object, tri_b, tri_a)."},
-    {{{"tri_a"}, kId, kIdOf<&Result::triA>, kOfContact, 128}, "The sensor's triangle that touches it."},
-    {{{"tri_b"}, kId, kIdOf<&Result::triB>, kOfContact, 136}, "The object's triangle touched."},
+    {{{"other_link"}, kId, {linkOf<&LinksMet::otherLink>}, kOfChain, kNowhere},
+     "Of a chain: the link that is touched, if it is no object; a line has its `other_link_name`, too."},
+    {{{"other_mesh"}, kId, {linkOf<&LinksMet::otherMesh>}, kOfChain, kNowhere}, "Which of that link's meshes."},
+    {{{"tri_a"}, kId, kIdOf<&Result::triA>, kOfContact, 128},
+     "The triangle of the sensor, or of the link's mesh, that touches it."},
+    {{{"tri_b"}, kId, kIdOf<&Result::triB>, kOfContact, 136},
+     "The triangle touched, of the object or of the other link's mesh."},
     {{{"feature_a"}, kFeature, kMember<&Result::featureA>, {When::always, When::always, When::always}, 154},
      "The smallest feature of `tri_a` that contains every point at which the triangles touch at that moment, exactly; "
      "with a `clearance`, of the nearest points. Null without contact."},
@@ -188,11 +203,13 @@ auto inType(const AnswerField& field, const Work& work) {
 }  // namespace
 
 AnswerRow::AnswerRow(const Query& query_, const Result& answer, AnswerMode mode, std::optional<double> speed_,
-                     uint64_t index_)
+                     uint64_t index_, std::optional<LinksMet> links_)
     : query(query_),
       result(answer),
-      fractionLo(takesStep(query) ? answer.lo : kNull),
-      fractionHi(takesStep(query) ? answer.hi : kNull),
+      links(links_),
+      isStep(links || takesStep(query)),
+      fractionLo(isStep ? answer.lo : kNull),
+      fractionHi(isStep ? answer.hi : kNull),
       isSampled(mode == AnswerMode::sampled),
       speed(speed_),
       index(index_) {
@@ -219,13 +236,15 @@ bool has(const AnswerRow& row, When when) {
     case When::always:
       return true;
     case When::step:
-      return takesStep(row.query);
+      return row.isStep;
     case When::near:
       return row.query.clearance > 0;
     case When::timed:
       return row.speed.has_value();
     case When::sampled:
       return row.isSampled;
+    case When::chain:
+      return row.links.has_value();
   }
   return false;
 }

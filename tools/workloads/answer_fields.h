@@ -15,19 +15,22 @@ namespace radar::tools {
 
 /// An answer, as members take their values from it.
 struct AnswerRow {
+  /// `links`: of a chain's answer.
   AnswerRow(const Query& query, const Result& answer, AnswerMode mode, std::optional<double> speed = {},
-            uint64_t index = 0);
+            uint64_t index = 0, std::optional<LinksMet> links = {});
 
   const Query& query;
-  Result result;                  ///< t, lo and hi are distances (radar::toDistances)
-  double fractionLo, fractionHi;  ///< if takesStep(query); else NaN
+  Result result;  ///< t, lo and hi are distances (radar::toDistances)
+  std::optional<LinksMet> links;
+  bool isStep;                    ///< takesStep(query), or of a chain
+  double fractionLo, fractionHi;  ///< of a step; else NaN
   bool isSampled;                 ///< answered in mode sampled
   std::optional<double> speed;    ///< the query's
   uint64_t index;                 ///< of the query
 };
 
 /// Which answers have a member.
-enum class When { never, always, step, near, timed, sampled };
+enum class When { never, always, step, near, timed, sampled, chain };
 
 struct AnswerName {
   const char* name;

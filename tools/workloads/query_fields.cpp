@@ -21,12 +21,17 @@ constexpr QueryField kFields[] = {
     {.name = "any_hit",
      .member = &Query::anyHit,
      .about = "Asks only whether there is a contact; cheaper if there is one",
-     .cast = true},
-    {.name = "exclude", .member = &Query::exclude, .about = "Objects that take no part, such as the sensor's own"},
+     .cast = true,
+     .chain = true},
+    {.name = "exclude",
+     .member = &Query::exclude,
+     .about = "Objects that take no part, such as the sensor's own",
+     .chain = true},
     {.name = "mask",
      .member = &Query::mask,
      .about = "32 bits; an object takes part if its mask shares one",
-     .most = ~0u},
+     .most = ~0u,
+     .chain = true},
     {.name = "speed",
      .member = &QuerySpec::speed,
      .about = "Units per second; the answer then says when",
@@ -67,13 +72,16 @@ constexpr QueryField kFields[] = {
      .about = "Counts as contact when the surfaces come within this distance of each other",
      .cast = true,
      .sampled = Sampled::no,
-     .option = true},
+     .option = true,
+     .chain = true},
     {.name = "tolerance",
      .member = &Query::tolerance,
-     .about = "With a clearance or a turn: how narrow the bracket is to be, as a length; else 1e-6 of the sensor's "
-              "size, or of the clearance if that is more",
+     .about =
+         "With a clearance, a turn or a chain: how narrow the bracket is to be, as a length; else 1e-6 of the sensor's "
+         "size, or of the clearance if that is more",
      .cast = true,
-     .sampled = Sampled::idle},
+     .sampled = Sampled::idle,
+     .chain = true},
 };
 
 std::string defaultOf(const QueryField& field) {

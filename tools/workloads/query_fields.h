@@ -26,6 +26,7 @@ struct QueryField {
   /// In mode sampled, which refuses `no`; `idle` changes nothing there, as without the options that it is about.
   enum class Sampled { yes, idle, no } sampled = Sampled::yes;
   bool option = false;  ///< of the command sweep
+  bool chain = false;   ///< of a chain, too
 
   /// 'b' true or false, 'u' whole number, 'f' number, 'o' ids of objects
   char kind() const { return "buffo"[member.index()]; }

@@ -71,17 +71,34 @@ double sensorSize(const Scene& scene, const Query& query) {
   return boundsOf(scene.mesh(query.mesh), query.worldFromMesh).longest();
 }
 
+ChainQuery chainQueryOf(const QuerySpec& query) {
+  return {.from = query.chain->from,
+          .to = query.chain->to,
+          .worldFromBase = query.worldFromMesh,
+          .anyHit = query.anyHit,
+          .exclude = query.exclude,
+          .mask = query.mask,
+          .clearance = query.clearance,
+          .tolerance = query.tolerance};
+}
+
 std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resolution, AnswerMode mode) {
   std::vector<Batch> batches;
-  std::map<std::tuple<uint32_t, uint64_t, AnswerMode>, size_t> places;
+  std::map<std::tuple<uint32_t, uint64_t, AnswerMode, std::optional<uint32_t>>, size_t> places;
   for (uint32_t i = 0; i < specs.size(); ++i) {
     const AnswerMode own = specs[i].mode.value_or(mode);
-    const auto [place, isNew] = places.try_emplace({specs[i].scene, specs[i].batch, own}, batches.size());
-    if (isNew) batches.push_back({.scene = specs[i].scene, .mode = own});
+    std::optional<uint32_t> chain;
+    if (specs[i].chain) chain = specs[i].chain->chain;
+    const auto [place, isNew] = places.try_emplace({specs[i].scene, specs[i].batch, own, chain}, batches.size());
+    if (isNew) batches.push_back({.scene = specs[i].scene, .mode = own, .chain = chain});
     Batch& batch = batches[place->second];
+    batch.numbers.push_back(i);
+    if (chain) {
+      batch.moves.push_back(chainQueryOf(specs[i]));
+      continue;
+    }
     batch.queries.push_back(specs[i]);
     batch.queries.back().resolution = resolution;
-    batch.numbers.push_back(i);
   }
   return batches;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "radar/chain.h"
 #include "radar/radar.h"
 
 namespace radar::tools {
@@ -50,6 +51,23 @@ struct SceneSpec {
   std::vector<std::string> names;     ///< of the instances, if they are the parts of an assembly; else empty
 };
 
+/// A chain with what only files say of it.
+struct ChainSpec : Chain {
+  std::vector<std::string> linkNames, variableNames;
+};
+
+/// A chain's way: from a configuration to another.
+struct ChainWay {
+  uint32_t chain = 0;
+  std::vector<double> from, to;
+  friend bool operator==(const ChainWay&, const ChainWay&) = default;
+};
+
+/// Which mesh of a chain touches something, and that of which other link, if it does; else kNone. As in ChainResult.
+struct LinksMet {
+  uint32_t link = kNone, mesh = kNone, otherLink = kNone, otherMesh = kNone;
+};
+
 /// How an answer is found.
 enum class AnswerMode { sampled, contact, reference };
 
@@ -57,6 +75,7 @@ enum class AnswerMode { sampled, contact, reference };
 struct QuerySpec : Query {
   std::string id;
   uint32_t scene = 0;
+  std::optional<ChainWay> chain;   ///< moves instead of a sensor: `mesh` is kNone, and `worldFromMesh` places the base
   uint64_t batch = 0;              ///< queries of one scene and one batch number are answered in one submission
   std::optional<AnswerMode> mode;  ///< overrides the command's
   std::optional<double> speed;     ///< units per second
@@ -69,9 +88,13 @@ struct QuerySpec : Query {
 inline bool takesStep(const Query& query) {
   return query.motion || query.turn;
 }
+inline bool takesStep(const QuerySpec& query) {
+  return query.chain || takesStep(static_cast<const Query&>(query));
+}
 
 struct Workload {
   std::vector<MeshData> meshes;
+  std::vector<ChainSpec> chains;
   std::vector<SceneSpec> scenes;
   std::vector<QuerySpec> queries;
 
@@ -90,11 +113,16 @@ std::vector<Query> queriesOf(std::span<const QuerySpec> specs, uint32_t resoluti
 /// Greatest extent of the placed sensor's box.
 double sensorSize(const Scene& scene, const Query& query);
 
-/// The queries of one scene, one batch number and one mode.
+/// What a query asks of its chain; the configurations stay in the query.
+ChainQuery chainQueryOf(const QuerySpec& query);
+
+/// The queries of one scene, one batch number and one mode; of one chain, if they are of chains.
 struct Batch {
   uint32_t scene = 0;
   AnswerMode mode = AnswerMode::contact;
-  std::vector<Query> queries;
+  std::optional<uint32_t> chain;
+  std::vector<Query> queries;     ///< or else:
+  std::vector<ChainQuery> moves;  ///< whose configurations are those of the given ones
   std::vector<uint32_t> numbers;  ///< where they stand among the given ones
 };
 /// In the order of first appearance. `mode`: of queries that do not choose one.

@@ -1,5 +1,6 @@
 """Shapes and scenes of the tests. A message of the validation layers is a warning, and every warning fails a test."""
 
+import base64
 import json
 import pathlib
 import re
@@ -46,6 +47,12 @@ def same_answers(a: cyber_radar.Casts, b: cyber_radar.Casts, but: tuple[str, ...
     names = a.records.dtype.names
     assert names == b.records.dtype.names
     return all(same_bits(a.records[name], b.records[name]) for name in names if name not in but)
+
+
+def numbers(array: dict) -> np.ndarray:
+    """An array in the data of a page."""
+    ((kind, text),) = array.items()
+    return np.frombuffer(base64.b64decode(text), kind)
 
 
 def page_data(file: pathlib.Path) -> dict:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import FACES, at, box, random_poses, same_answers
+from conftest import FACES, at, box, numbers, page_data, random_poses, same_answers
 from cyber_radar import Chain, Link, Status
 from test_arguments import refusal
 from test_running import endless, many_threads, until_another_thread_runs_within
@@ -102,6 +102,30 @@ def touched(chain: Chain, move, configuration, base):
     entry = chain.links[int(move.other_link)].meshes[int(move.other_mesh)]
     mesh, pose = entry if isinstance(entry, tuple) else (entry, np.eye(4))
     return chain.poses(configuration, base)[int(move.other_link)] @ pose, chain.scene.mesh(mesh)
+
+
+def test_a_page_plays_moves(tmp_path):
+    chain = arm()
+    start, end = configurations(1, 8).reshape(4, 2, 6), configurations(2, 8).reshape(4, 2, 6)
+    start[2, 0, 3] = np.nan
+    moves = chain.move(start, end, at([1, 2, 3]), clearance=0.05, exclude_from_all=[1], tolerance=0.01)
+    shown = page_data(moves.show(tmp_path / "page.html"))
+    assert shown["title"] == "Moves" and shown["queries"]["id"][:3] == ["0, 0", "0, 1", "1, 0"]
+    assert [link["name"] for link in shown["chains"][0]["links"]] == list(chain.names)
+    assert shown["chains"][0]["links"][2]["origin"] == np.asarray(at([0, 0, 2]))[:3].ravel().tolist()
+    assert shown["chains"][0]["links"][1]["joint"] == "revolute" and shown["chains"][0]["links"][0]["joint"] == "prismatic"
+    assert len(shown["chains"][0]["links"][6]["meshes"]) == 2
+    move = shown["queries"]["moves"]["3"]
+    assert (move["from"], move["to"]) == (start[1, 1].tolist(), end[1, 1].tolist()) and move["base"][3::4] == [1, 2, 3]
+    assert list(shown["reasons"]) == ["4"] and "start: " in shown["reasons"]["4"]
+    assert shown["queries"]["asked"]["3"] == {"clearance": 0.05, "tolerance": 0.01} and shown["queries"]["ignored"]["3"] == [1]
+    for name in ("link", "mesh", "object", "other_link", "other_mesh", "tri_a", "tri_b"):
+        np.testing.assert_array_equal(numbers(shown["answers"][name]).astype(np.int32), moves.records[name].ravel(), name)
+    np.testing.assert_array_equal(numbers(shown["answers"]["lo"]), moves.fraction_lo.ravel())
+    part = page_data(moves[1, 1].show(tmp_path / "part.html", title="One"))
+    assert part["title"] == "One" and part["queries"]["moves"] == {"0": move} and part["queries"]["id"] == ["1, 1"]
+    with pytest.raises(ValueError, match=r"show: expected moves that Chain\.move\(\) has answered"):
+        pickle.loads(pickle.dumps(moves)).show(tmp_path / "page.html")
 
 
 def test_a_forearm_folds_back_onto_its_upper_arm_at_the_angle_that_geometry_says():

@@ -106,8 +106,11 @@ def test_motions_of_an_arm_among_shelves_are_free_where_samples_are(tmp_path):
     assert f"{link}, in {hits}; the arm hits itself in {(moves.other_link >= 0).sum()}\n" in text
     assert hits == max((moves.link_names == name).sum() for name in robot.names)
 
-    shown = page_data(tmp_path / "contact.html")  # seven links at five moments
-    assert shown["queries"]["count"] == 35 and "is about to touch object" in shown["title"]
+    shown = page_data(tmp_path / "contact.html")
+    best = arm.farthest(moves)
+    assert shown["title"] == f"The {best.link_names} touches object {best.object}"
+    assert len(shown["chains"][0]["links"]) == 7 and shown["queries"]["count"] == 1
+    assert best.fraction_lo == max(moves.fraction_lo[moves.object >= 0])
 
 
 def test_a_robot_of_a_file_may_move_among_the_shelves(tmp_path):

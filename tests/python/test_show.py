@@ -1,6 +1,5 @@
 """Pages of casts; tests/view looks at such pages in a browser."""
 
-import base64
 import pathlib
 import pickle
 import webbrowser
@@ -9,7 +8,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import FACES, at, box, page_data
+from conftest import FACES, at, box, numbers, page_data
 
 
 def row() -> tuple[cyber_radar.Scene, int]:
@@ -19,11 +18,6 @@ def row() -> tuple[cyber_radar.Scene, int]:
     ids = scene.add(cube, at([[5, 0, 0], [0, 50, 0], [10, 0, 0], [15, 0, 0]]))
     scene.remove(ids[1])
     return scene, cube
-
-
-def numbers(array: dict) -> np.ndarray:
-    ((kind, text),) = array.items()
-    return np.frombuffer(base64.b64decode(text), kind)
 
 
 def test_a_page_has_the_casts_and_the_scene(tmp_path):
@@ -109,7 +103,7 @@ def test_distances_are_ways_and_names_and_motions_are_shown(tmp_path):
     np.testing.assert_allclose(numbers(shown["queries"]["way"]), [0, 0, 3, 0, 0, 0])
     assert numbers(shown["scenes"][0]["moving"]).tolist() == [0]
     one = scene.cast(cube, None, [0.0, 0, 0], mode="reference")
-    assert page_data(one.show(tmp_path / "one.html"))["queries"]["id"] == ["cast"]
+    assert page_data(one.show(tmp_path / "one.html"))["queries"]["id"] == ["one"]
 
 
 def test_what_is_too_much_is_cut_and_the_page_says_so(tmp_path):

@@ -5,7 +5,7 @@
     ... arm.py robot.urdf --segments 32 --motions 1000 --out robot
 
 The arm has six axes and is made of boxes, unless a URDF file is given. Writes arm.urdf, and contact.html, a page for
-any browser: the motion that gets farthest before it touches a shelf, at some moments up to then.
+any browser: the motion that gets farthest before it touches a shelf, played up to then.
 """
 
 from __future__ import annotations
@@ -89,18 +89,12 @@ def described(moves: cyber_radar.Moves) -> str:
     return text
 
 
-def show(arm: cyber_radar.Chain, through: np.ndarray, moves: cyber_radar.Moves, file: pathlib.Path) -> None:
-    """The arm at moments of a motion, as casts that rest."""
+def farthest(moves: cyber_radar.Moves) -> cyber_radar.Moves:
+    """The motion that gets farthest before it touches a shelf."""
     candidates = np.where(moves.touches & (moves.object >= 0), moves.fraction_lo, -1)
     if candidates.max() < 0:
         raise SystemExit("arm.py: no motion touches a shelf: try more --motions")
-    best = candidates.argmax()
-    moments = np.linspace(0, candidates[best], 5)[:, None]
-    placed = arm.poses(through[best] + moments * (through[best + 1] - through[best]))
-    solid = [(i, mesh, pose) for i, link in enumerate(arm.links) for mesh, pose in link.meshes]
-    poses = np.stack([placed[:, i] @ pose for i, _, pose in solid], axis=1)
-    casts = arm.scene.cast([mesh for _, mesh, _ in solid], poses, [0, 0, 0], mode="reference")
-    casts.show(file, title=f"The {moves.link_names[best]} is about to touch object {moves.object[best]}")
+    return moves[candidates.argmax()]
 
 
 def main() -> None:
@@ -124,7 +118,8 @@ def main() -> None:
     seconds = time.perf_counter() - begin
     print(described(moves))
     print(f"{seconds:.2f} s, {1e6 * seconds / len(moves):.0f} us a motion")
-    show(arm, through, moves, options.out / "contact.html")
+    best = farthest(moves)
+    best.show(options.out / "contact.html", title=f"The {best.link_names} touches object {best.object}")
 
 
 if __name__ == "__main__":

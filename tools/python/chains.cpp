@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -12,8 +13,10 @@
 
 #include "python/arrays.h"
 #include "python/errands.h"
+#include "python/page.h"
 #include "python/signals.h"
 #include "radar/chain.h"
+#include "view/page.h"
 
 namespace radar::python {
 
@@ -80,6 +83,26 @@ MoveRecord recordOf(const ChainResult& answer) {
           .status = static_cast<uint8_t>(found.status),
           .featureA = static_cast<uint8_t>(found.featureA),
           .featureB = static_cast<uint8_t>(found.featureB)};
+}
+
+tools::LinksMet linksOf(const MoveRecord& record) {
+  return {static_cast<uint32_t>(record.link), static_cast<uint32_t>(record.mesh),
+          static_cast<uint32_t>(record.otherLink), static_cast<uint32_t>(record.otherMesh)};
+}
+
+/// What a page shows of it.
+Result resultOf(const MoveRecord& record) {
+  Result result(static_cast<Status>(record.status));
+  result.t = std::isnan(record.fraction) ? record.lo : record.fraction;
+  result.lo = record.lo;
+  result.hi = record.hi;
+  result.point = record.point;
+  result.normal = record.normal;
+  result.gap = record.gap;
+  result.object = static_cast<uint32_t>(record.object);
+  result.triA = static_cast<uint32_t>(record.triA);
+  result.triB = static_cast<uint32_t>(record.triB);
+  return result;
 }
 
 /// A query's broken contract in the words of the arguments; empty if it is kept.
@@ -172,6 +195,38 @@ py::tuple moveChain(CastingScene& scene, const ChainTuple& chain, const Array<do
   return py::make_tuple(records, reasons);
 }
 
+/// What _engine.pyi says of moves_page().
+std::string movesPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
+                      const ChainTuple& chain, const std::vector<std::string>& linkNames,
+                      const std::vector<ObjectId>& excluded, const py::dict& options, const std::string& title,
+                      uint64_t count, const std::vector<std::string>& names, const py::dict& arrays,
+                      const Array<MoveRecord>& records, const std::map<uint32_t, std::string>& reasons) {
+  const size_t shown = names.size(), width = std::get<1>(chain);
+  const auto *const starts = numbers<double>(arrays, "start", width * shown),
+                    *const ends = numbers<double>(arrays, "end", width * shown),
+                    *const bases = numbers<double>(arrays, "base", 16 * shown);
+  requireCount(records, "records", shown);
+  tools::Workload workload = workloadOf(scene.scene(), objectNames);
+  workload.chains.push_back({chainFrom(scene.based(), chain), linkNames, {}});
+  std::vector<Result> results;
+  tools::PageContent content{.title = title, .queries = count, .reasons = reasons};
+  for (size_t i = 0; i < shown; ++i) {
+    tools::QuerySpec& query = workload.queries.emplace_back();
+    query.id = names[i];
+    query.mesh = kNone;
+    query.worldFromMesh = transformFrom(bases + 16 * i);
+    query.chain = {0, {starts + width * i, starts + width * (i + 1)}, {ends + width * i, ends + width * (i + 1)}};
+    query.exclude = excluded;
+    query.anyHit = options["any_hit"].cast<bool>();
+    query.mask = options["mask"].cast<uint32_t>();
+    query.clearance = options["clearance"].cast<double>();
+    query.tolerance = options["tolerance"].cast<std::optional<double>>();
+    results.push_back(resultOf(records.data()[i]));
+    content.links.push_back(linksOf(records.data()[i]));
+  }
+  return tools::pageOf(workload, results, content);
+}
+
 }  // namespace
 
 void defineChains(py::module_& module, py::class_<CastingScene>& scene) {
@@ -183,7 +238,7 @@ void defineChains(py::module_& module, py::class_<CastingScene>& scene) {
   scene.def("wrong_with_chain", [](const CastingScene& of, const ChainTuple& chain) {
     return validate(chainFrom(of.based(), chain), of.scene());
   });
-  scene.def("move_chain", &moveChain);
+  scene.def("move_chain", &moveChain).def("moves_page", &movesPage);
 }
 
 }  // namespace radar::python

@@ -10,11 +10,8 @@
 
 namespace radar::python {
 
-namespace {
-
 using tools::Workload;
 
-/// Numbers of meshes and objects are the scene's.
 Workload workloadOf(const Scene& scene, const std::map<uint32_t, std::string>& objectNames) {
   Workload workload;
   for (MeshId id = 0; id < scene.meshLimit(); ++id) {
@@ -39,8 +36,6 @@ Workload workloadOf(const Scene& scene, const std::map<uint32_t, std::string>& o
   for (const auto& [id, name] : objectNames) spec.names.at(id) = name;
   return workload;
 }
-
-}  // namespace
 
 std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
                       const std::string& title, uint64_t count, const std::vector<std::string>& names,

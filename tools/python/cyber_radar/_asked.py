@@ -1,4 +1,4 @@
-"""What casts were asked."""
+"""What was asked, of casts and of moves of chains."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ def _of(array: npt.NDArray[Any], numbers: npt.NDArray[np.int64], shape: tuple[in
 
 @dataclasses.dataclass(frozen=True)
 class Asked:
-    """What some casts of a batch were asked, for a page. Of a large batch, what the page can show, one after the other."""
+    """What some casts, or moves, of a batch were asked, for a page. Of a large batch, what the page can show, one after
+    the other."""
 
-    make_page: Callable[..., str]  #: the scene's: _engine.Scene.page without the objects' names
+    make_page: Callable[..., str]  #: of a title, the number of answers, names, arrays, records and more
     object_names: dict[int, str]  #: the scene's own
     arrays: dict[str, npt.NDArray[Any]]  #: of the whole batch
     number: npt.NDArray[np.int64]  #: in the batch, in C order
@@ -58,12 +59,6 @@ class Asked:
         numbers = self.number.reshape(-1)[: records.size]
         shape = (self.number.size,) if self.is_cut else self.shape
         arrays = {name: _of(array, numbers, shape) for name, array in self.arrays.items()}
-        ways = arrays["displacements"]
-        lengths = np.linalg.norm(ways, axis=-1)
-        arrays.setdefault("distances", lengths)
-        if "turns: axes" not in arrays:
-            ways[~(lengths > 0)] = (0, 0, 1)
-        arrays |= {name: np.array(arrays[name], np.float64) for name in _engine.OPTIONS}
         places = np.stack(np.unravel_index(numbers, self.shape), axis=-1) if self.shape else np.empty((1, 0))
-        names = [", ".join(map(str, place)) or "cast" for place in places.tolist()]
+        names = [", ".join(map(str, place)) or "one" for place in places.tolist()]
         return self.make_page(title, count, names, arrays, records, *listed)

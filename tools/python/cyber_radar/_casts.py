@@ -53,8 +53,10 @@ class Answers:
     """Members of `records`, a structured array of a leading shape (...), as attributes."""
 
     _called = "answers"  #: in messages
+    _answered_by = "a scene"
     records: npt.NDArray[Any]
     reasons: dict[str, npt.NDArray[np.int64]]
+    _asked: Asked | None
 
     def __getattr__(self, name: str) -> npt.NDArray[Any]:
         records = self.__dict__.get("records")
@@ -83,6 +85,40 @@ class Answers:
     def to_dict(self) -> dict[str, npt.NDArray[Any]]:
         """The arrays by name, without what is listed: numpy.savez(file, **casts.to_dict())."""
         return {name: self.records[name] for name in self.records.dtype.names}
+
+    def show(self, file: str | os.PathLike[str] | None = None, *, title: str = "") -> pathlib.Path:
+        """A page for a browser, which shows the answers and their scene as it is now: one file that needs no network. Up
+        to 10,000 answers and 100,000 objects; the page says if it leaves some out.
+
+        file: where it goes; None: to a temporary file, which is opened in a browser. Returns where it is.
+        """
+        page = self._page(title)
+        return open_in_browser(page) if file is None else write(page, file)
+
+    def _repr_html_(self) -> str | None:
+        """The page in a cell of a notebook."""
+        return in_notebook(self._page(""), repr(self)) if self._asked else None
+
+    def _page(self, title: str) -> str:
+        """`title`: if empty, what the answers are."""
+        if self._asked is None:
+            raise ValueError(
+                f"show: expected {self._called} that {self._answered_by} has answered, got some that were unpickled or "
+                f"made, or a part of more than {MOST_REMEMBERED:,}"
+            )
+        shown = min(self.records.size, _engine.MOST_SHOWN)
+        reasons = {int(i): reason for reason, found in self.reasons.items() for i in found if i < shown}
+        records = first(self.records, self.shape, shown)
+        listed = self._listed(shown)
+        return self._asked.page(title or type(self).__name__, self.records.size, records, reasons, *listed)
+
+    def _listed(self, shown: int) -> tuple[Any, ...]:
+        """What the first answers list."""
+        return ()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the scene, of which show() knows."""
+        return {name: value for name, value in self.__dict__.items() if name != "_asked"}
 
     def __len__(self) -> int:
         if not self.shape:
@@ -142,47 +178,23 @@ class Casts(Answers):
     """Why casts are invalid: reason -> their positions, counted in C order."""
     _asked: Asked | None = None
     _called = "casts"
+    _answered_by = "Scene.cast()"
 
     @classmethod
     def empty(cls, shape: tuple[int, ...], mode: str = "contact") -> Casts:
         """Arrays for answers of this shape, to be filled by Scene.cast(out=...)."""
         return cls(np.empty(shape, record_type(mode)))
 
-    def show(self, file: str | os.PathLike[str] | None = None, *, title: str = "Casts") -> pathlib.Path:
-        """A page for a browser, which shows the casts and their scene as it is now: one file that needs no network. Up
-        to 10,000 casts and 100,000 objects; the page says if it leaves some out.
-
-        file: where it goes; None: to a temporary file, which is opened in a browser. Returns where it is.
-        """
-        page = self._page(title)
-        return open_in_browser(page) if file is None else write(page, file)
-
-    def _repr_html_(self) -> str | None:
-        """The page in a cell of a notebook."""
-        return in_notebook(self._page("Casts"), repr(self)) if self._asked else None
-
-    def _page(self, title: str) -> str:
-        if self._asked is None:
-            raise ValueError(
-                "show: expected casts that Scene.cast() has answered, got some that were unpickled or made, or a part of "
-                f"more than {MOST_REMEMBERED:,}"
-            )
-        shown = min(self.records.size, _engine.MOST_SHOWN)
+    def _listed(self, shown: int) -> tuple[Any, ...]:
         left_out: dict[int, list[int]] = {}
         if self.overlapping is not None:
             rows, offsets = self.overlapping.object.tolist(), self.overlapping.offsets.tolist()
             left_out = {i: rows[offsets[i] : offsets[i + 1]] for i in range(shown) if offsets[i] < offsets[i + 1]}
-        reasons = {int(i): reason for reason, found in self.reasons.items() for i in found if i < shown}
         hits = None
         if self.hits is not None:
             offsets = self.hits.offsets[: shown + 1]
             hits = (self.hits.records[: offsets[-1]], offsets)
-        records = first(self.records, self.shape, shown)
-        return self._asked.page(title, self.records.size, records, reasons, left_out, hits)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Without the scene, of which show() knows."""
-        return {name: value for name, value in self.__dict__.items() if name != "_asked"}
+        return left_out, hits
 
     def __getitem__(self, index: Any) -> Casts:
         records, chosen, reasons = self._chosen(index)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import re
 from collections.abc import Iterable, Sequence
 from typing import Any, Literal, Union
@@ -13,6 +14,7 @@ import numpy.typing as npt
 from . import _engine
 from ._arguments import one_number, one_whole_number
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals
+from ._asked import Asked
 from ._casts import Answers
 from ._scene import Scene
 
@@ -173,7 +175,12 @@ class Chain:
         excluded = self.scene._excluded(exclude_from_all, None).tolist()
         with self.scene._exclusive() as engine:
             records, reasons = engine.move_chain(self._given(), starts, ends, bases, excluded, options)
-        return Moves(records.reshape(shape), reasons, self.names)
+        moves = Moves(records.reshape(shape), reasons, self.names)
+        asked = {"start": starts, "end": ends, "base": np.broadcast_to(bases, (count, 4, 4))}
+        arrays = {name: array.reshape(*shape, *array.shape[1:]) for name, array in asked.items()}
+        make_page = functools.partial(self._page, excluded, options)
+        moves._asked = Asked.of(make_page, self.scene._names, arrays, shape)
+        return moves
 
     def poses(self, configurations: npt.ArrayLike, base: npt.ArrayLike | None = None) -> npt.NDArray[np.float64]:
         """World from link, (..., links, 4, 4), in configurations (..., variables). base: as of move()."""
@@ -189,6 +196,10 @@ class Chain:
         return placed
 
     # ---------------------------------------------------------------------------------------------------------- inner
+
+    def _page(self, excluded: list[int], options: dict[str, Any], *shown: Any) -> str:
+        with self.scene._reading() as engine:
+            return engine.moves_page(self.scene._names, self._given(), list(self.names), excluded, options, *shown)
 
     def _called(self, i: int) -> str:
         return f"links[{i}] ({self.links[i].name!r})"
@@ -274,7 +285,9 @@ class Moves(Answers):
     """Why motions are invalid: reason -> their positions, counted in C order."""
     names: tuple[str, ...] = ()
     """Of the chain's links."""
+    _asked: Asked | None = None
     _called = "moves"
+    _answered_by = "Chain.move()"
 
     @property
     def link_names(self) -> npt.NDArray[np.str_]:
@@ -291,7 +304,9 @@ class Moves(Answers):
 
     def __getitem__(self, index: Any) -> Moves:
         records, _, reasons = self._chosen(index)
-        return Moves(records, reasons, self.names)
+        part = Moves(records, reasons, self.names)
+        part._asked = self._asked[index] if self._asked else None
+        return part
 
 
 def _variable(link: Link) -> str:

@@ -64,6 +64,21 @@ class Scene:
         options: dict[str, Any],
     ) -> tuple[npt.NDArray[Any], dict[str, _Ids]]:
         """Records (n,), and positions by reason. `bases`: (4, 4), or (n, 4, 4)."""
+    def moves_page(
+        self,
+        object_names: dict[int, str],
+        chain: Chain,
+        link_names: list[str],
+        excluded: list[int],
+        options: dict[str, Any],
+        title: str,
+        count: int,
+        names: list[str],
+        arrays: dict[str, npt.NDArray[Any]],
+        records: npt.NDArray[Any],
+        reasons: dict[int, str],
+    ) -> str:
+        """As page(), of moves."""
     def page(
         self,
         object_names: dict[int, str],

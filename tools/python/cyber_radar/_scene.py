@@ -354,9 +354,15 @@ class Scene:
         casts._asked = Asked.of(self._page, self._names, arguments, shape)
         return casts
 
-    def _page(self, *shown: Any) -> str:
+    def _page(self, title: str, count: int, names: list[str], arrays: dict[str, npt.NDArray[Any]], *shown: Any) -> str:
+        ways = arrays["displacements"]
+        lengths = np.linalg.norm(ways, axis=-1)
+        arrays.setdefault("distances", lengths)
+        if "turns: axes" not in arrays:
+            ways[~(lengths > 0)] = (0, 0, 1)
+        arrays |= {name: np.array(arrays[name], np.float64) for name in _engine.OPTIONS}
         with self._reading() as engine:
-            return engine.page(self._names, *shown)
+            return engine.page(self._names, title, count, names, arrays, *shown)
 
     @property
     def device_names(self) -> list[str]:

@@ -124,11 +124,12 @@ class View:
         return [entry for entry in self.browser.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
 
 
-def make_page(folder, queries, *options):
+def make_page(folder, queries, *options, chains=()):
     (folder / "cube.obj").write_text(CUBE)
     batch = {
         "format": "cyber-radar-queries-1",
         "meshes": ["cube.obj"],
+        "chains": list(chains),
         "scenes": [{"instances": [at(0, 10 * i, 0, 0) for i in range(4)]}],
         "queries": [{"scene": 0, **query} for query in queries],
     }
@@ -423,6 +424,26 @@ def test_a_sensor_that_turns_is_drawn_where_its_turn_takes_it(browser, tmp_path)
     assert [round(x, 6) for x in place] == [40, 40, 10]
     view.run("view.camera.target = [40, 40, 10]; view.camera.distance = 40; view.change()")
     assert max(colour((40, 40, 11))) > 1.2 * min(colour((40, 40, 11)))
+    assert view.errors() == []
+
+
+def test_a_chain_is_drawn_where_its_joints_take_it(browser, tmp_path):
+    # The same swing: an arm of 10, and on it a tip, 4 higher.
+    turning = {"joint": "revolute", "axis": [0, 0, 2]}
+    links = [{"name": "arm", **turning, "meshes": [at(0, 10, 0, 0)]}, {"name": "tip", "parent": "arm", "meshes": [at(0, 14, 0, 4)]}]
+    query = {"id": "swings", "chain": 0, "from": [0.5], "to": [3], "base": at(0, 0, -10, 0)[1:]}
+    view = View(browser, make_page(tmp_path, [query], chains=[{"links": links}]))
+    words = words_of(view, 0)
+    assert "then its link arm touches object 0 (cube.obj)." in words and "Chain: 2 links, 2 meshes, 24 triangles" in words
+    share = view.run("return view.data.answers[0].share")
+    view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.6; view.setAlone(true); view.change()")
+    for time in (1, 0.5, 0.25):
+        view.run("view.seek(arguments[0])", time)
+        view.run("view.stage.begin(4e6)")
+        for angle, is_there in ((0.5 + 2.5 * time * share, True), (0.1, False)):
+            for reach, height in ((10, 1), (14, 5)):
+                place = reach * math.cos(angle), -10 + reach * math.sin(angle), height
+                assert is_like(view.colour_at(place), "hit") == is_there, (time, place)
     assert view.errors() == []
 
 

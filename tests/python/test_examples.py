@@ -11,10 +11,11 @@ EXAMPLES = pathlib.Path(__file__).parents[2] / "tools/examples"
 sys.path.insert(0, str(EXAMPLES))
 
 import arm  # noqa: E402
+import bayonet  # noqa: E402
 import burr  # noqa: E402
 import cyber_radar  # noqa: E402
 import disassembly  # noqa: E402
-from conftest import page_data  # noqa: E402
+from conftest import numbers, page_data  # noqa: E402
 from test_scene import ENGINE  # noqa: E402
 
 
@@ -83,6 +84,22 @@ def test_an_engine_comes_apart_and_what_interpenetrates_is_listed(tmp_path):
             assert part not in others
             assert not any((min(part, k), max(part, k)) in crossing for k in others)
     assert all(len(group) > 1 for group in told["locked"])
+
+
+def test_a_bayonet_comes_out_where_its_lugs_stand_in_the_slots(tmp_path):
+    text = run("bayonet.py", "--out", tmp_path)
+    # Lugs of 20 degrees in slots of 30, from whose middle they are locked 45 away; the rim is 0.4 above them.
+    assert "pulled, it is free for 0.4 mm; turned back, for 49.9999 degrees\n" in text
+    assert "turned back by 40.5 to 49.5 degrees, it comes out\n" in text
+    for mesh in (bayonet.plug(), bayonet.socket()):
+        a, b, c = mesh[0].astype(float)[mesh[1]].transpose(1, 0, 2)
+        edges = np.concatenate([mesh[1][:, [i, (i + 1) % 3]] for i in range(3)])
+        assert len(np.unique(edges, axis=0)) == len(edges)  # each once, and
+        assert {(i, k) for i, k in edges.tolist()} == {(k, i) for i, k in edges.tolist()}  # once the other way round
+        assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() > 0  # wound outwards
+    shown = page_data(tmp_path / "bayonet.html")
+    assert numbers(shown["answers"]["status"]).tolist() == [0, 1, 1]
+    assert [round(np.rad2deg(turn["angle"])) for turn in shown["queries"]["turns"].values()] == [0, -45, 0]
 
 
 def test_motions_of_an_arm_among_shelves_are_free_where_samples_are(tmp_path):

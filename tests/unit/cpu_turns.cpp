@@ -7,70 +7,17 @@
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/seeds.h"
-#include "support/shape.h"
+#include "unit/turn_truth.h"
 #include "workloads/shapes.h"
 
 using namespace radar;
+using test::turned;
+using test::TurnTruth;
 using tools::Random;
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-test::Shape placed(const Mesh& mesh, const Transform& pose, const auto& move) {
-  test::Shape out;
-  for (uint32_t i = 0; i < mesh.triangleCount(); ++i) {
-    exact::Triangle corners = placedTriangle(mesh, pose, i);
-    for (Vector& corner : corners) corner = move(corner);
-    out.add(corners);
-  }
-  return out;
-}
-
-// As the question is stated.
-Vector turned(const Query& query, const Vector& p, double s) {
-  using Real = long double;
-  const Turn& turn = *query.turn;
-  const Vector way = query.motion.value_or(Vector{});
-  Real axis[3], r[3];
-  const Real length = std::sqrt(Real(turn.axis[0]) * turn.axis[0] + Real(turn.axis[1]) * turn.axis[1] +
-                                Real(turn.axis[2]) * turn.axis[2]);
-  for (int k = 0; k < 3; ++k) {
-    axis[k] = turn.axis[k] / length;
-    r[k] = Real(p[k]) - turn.centre[k];
-  }
-  const Real angle = Real(s) * turn.angle, along = axis[0] * r[0] + axis[1] * r[1] + axis[2] * r[2];
-  const Real sine = std::sin(angle), cosine = std::cos(angle);
-  Vector out;
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const Real across = axis[i] * r[j] - axis[j] * r[i];
-    out[k] = double(turn.centre[k] + Real(s) * way[k] + cosine * r[k] + sine * across + (1 - cosine) * along * axis[k]);
-  }
-  return out;
-}
-
-/// A query's sensor and all objects, at any time of the step.
-class Truth {
- public:
-  Truth(const Query& query, const Scene& scene) : query_(query), scene_(scene.impl()) {}
-
-  /// Whether surfaces cross by more than `slack`; with a clearance, whether they are nearer than that less `slack`.
-  bool meet(double s, double slack) const {
-    const test::Shape sensor =
-        placed(scene_.meshes[query_.mesh], query_.worldFromMesh, [&](const Vector& p) { return turned(query_, p, s); });
-    for (const Scene::Impl::ObjectSlot& slot : scene_.objects) {
-      const auto move = [&](const Vector& p) { return along(p, s, slot.object.motion); };
-      const test::Shape other = placed(scene_.meshes[slot.object.mesh], slot.object.worldFromMesh, move);
-      if (test::meet(sensor, other, query_.clearance, slack)) return true;
-    }
-    return false;
-  }
-
- private:
-  const Query& query_;
-  const Scene::Impl& scene_;
-};
 
 Result answerOf(const Scene& scene, const Query& query) {
   return CpuSweeper(scene, 1).run({&query, 1}).results[0];
@@ -114,6 +61,7 @@ TEST_CASE("a rod that sweeps a post touches it at the angle that geometry says, 
       CHECK(found.hi >= expected - 1e-12);
       CHECK((found.hi - found.lo) * kPi * 10.1 * size <= 1.01e-6 * longestSide(scene, query) + 1e-12 * size);
       CHECK(found.fraction == found.lo);
+      CHECK(found.gap == 0);
       query.turn->angle = -kPi;  // the other way round it comes later, after three quarters
       CHECK(answerOf(scene, query).status == Status::clear);
     }
@@ -256,7 +204,7 @@ TEST_CASE("random sensors that turn meet nothing before lo, and certainly someth
     if (random.oneIn(3)) query.clearance = random.uniform(0, 1) * size;
     const Result found = answerOf(scene, query);
     if (getsDeep || found.status != Status::undecided) ++statuses[static_cast<size_t>(found.status)];
-    const Truth truth(query, scene);
+    const TurnTruth truth(query, scene);
     // Of what doubles keep of places so far from the origin.
     const double rounding = 1e-10 * size + 1e-14 * arm * size;
     CAPTURE(seed, trial, size, arm, found.lo, found.hi, query.turn->angle, query.clearance,

@@ -1,6 +1,6 @@
 #include "cyber_radar/workload_output.h"
 #include "lab/commands.h"
-#include "workloads/hard_cases.h"
+#include "workloads/turning_families.h"
 
 namespace radar::tools {
 
@@ -15,7 +15,9 @@ void addHardCasesCommand(Program& program) {
       program.add("hard-cases", "Writes cases of a family in which queries are known to fail, in one scene");
   auto options = std::make_shared<Options>();
   options->output.addTo(command);
-  command.option("--family", &options->family, "Which").required().oneOf(hardFamilyNames());
+  std::vector<std::string> names = hardFamilyNames();
+  for (const std::string& turning : namesOf(turningFamilies())) names.push_back(turning);
+  command.option("--family", &options->family, "Which").required().oneOf(names);
   command.option("--seed", &options->seed, "Another seed, other cases").value("N");
   command.option("--first", &options->first, "Number of the first case").value("N");
   command.option("--cases", &options->cases, "How many").value("N").within(1, 100'000'000);

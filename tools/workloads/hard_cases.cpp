@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "workloads/shapes.h"
+#include "workloads/turning_families.h"
 
 namespace radar::tools {
 
@@ -43,6 +44,9 @@ void place(HardCase& hard, const Rotation& frame, const Vec3& origin) {
   move(hard.sensor.worldFromMesh);
   for (PlacedMesh& object : hard.objects) move(object.worldFromMesh);
   hard.direction = turned(frame, hard.direction);
+  if (!hard.turn) return;
+  hard.turn->axis = turned(frame, hard.turn->axis);
+  hard.turn->centre = turned(frame, hard.turn->centre) + origin;
 }
 
 void resize(HardCase& hard, double factor) {
@@ -51,6 +55,7 @@ void resize(HardCase& hard, double factor) {
     for (double& value : object.worldFromMesh.m) value *= factor;
   }
   hard.distance *= factor;
+  if (hard.turn) hard.turn->centre = factor * hard.turn->centre;
 }
 
 void moveVertices(PlacedMesh& placed, const Vec3& offset) {
@@ -59,15 +64,21 @@ void moveVertices(PlacedMesh& placed, const Vec3& offset) {
   placed.mesh = std::move(moved);
 }
 
-std::vector<std::string> hardFamilyNames() {
+std::vector<std::string> namesOf(const std::vector<HardFamily>& families) {
   std::vector<std::string> names;
-  for (const HardFamily& family : hardFamilies()) names.push_back(family.name);
+  for (const HardFamily& family : families) names.push_back(family.name);
   return names;
 }
 
+std::vector<std::string> hardFamilyNames() {
+  return namesOf(hardFamilies());
+}
+
 const HardFamily& hardFamily(std::string_view name) {
-  for (const HardFamily& family : hardFamilies()) {
-    if (family.name == name) return family;
+  for (const std::vector<HardFamily>* families : {&hardFamilies(), &turningFamilies()}) {
+    for (const HardFamily& family : *families) {
+      if (family.name == name) return family;
+    }
   }
   throw Error("no family of hard cases is called \"" + std::string(name) + "\"");
 }
@@ -76,7 +87,7 @@ HardCase hardCase(const HardFamily& family, uint64_t seed, uint64_t number) {
   Random random(seed * 1'000'003 + number);
   HardCase hard = family.make(family.values[number % family.values.size()], random);
   if (!family.placesItself) placeAnywhere(hard, random);
-  if (hard.objects.size() == 1 && random.oneIn(2)) {
+  if (!hard.turn && hard.objects.size() == 1 && random.oneIn(2)) {
     std::swap(hard.sensor, hard.objects[0]);
     hard.direction = -1 * hard.direction;
   }
@@ -100,8 +111,13 @@ Workload sceneOf(const std::vector<HardCase>& cases, Company company) {
     QuerySpec query;
     query.id = std::to_string(i);
     query.setSensor({meshIn(workload, hard.sensor.mesh), hard.sensor.worldFromMesh});
-    query.direction = hard.direction;
-    query.distance = hard.distance;
+    if (hard.turn) {
+      query.turn = hard.turn;
+      query.motion = hard.distance * hard.direction;
+    } else {
+      query.direction = hard.direction;
+      query.distance = hard.distance;
+    }
     query.mask = mask;
     for (const uint32_t object : hard.exclude) query.exclude.push_back(firstObject + object);
     query.ignoreLeaving = hard.ignoreLeaving;

@@ -23,6 +23,7 @@ struct HardCase {
   Vec3 direction{0, 0, 1};
   double distance = 0;
   std::vector<uint32_t> exclude = {};  ///< of the objects
+  std::optional<Turn> turn = {};       ///< then the motion is the direction, times the distance
   bool ignoreLeaving = false, skipOverlapping = false;
   std::optional<double> slack = {};
 };
@@ -45,11 +46,12 @@ struct HardFamily {
 
 const std::vector<HardFamily>& hardFamilies();
 std::vector<std::string> hardFamilyNames();
-/// Throws Error if there is no family of that name.
+std::vector<std::string> namesOf(const std::vector<HardFamily>& families);
+/// Of all, also of those that turn (turning_families.h). Throws Error if there is no family of that name.
 const HardFamily& hardFamily(std::string_view name);
 
 /// Case `number` does not depend on which others are made. Sensor and object are swapped in half of the cases with one
-/// object.
+/// object, but where the sensor turns.
 HardCase hardCase(const HardFamily& family, uint64_t seed, uint64_t number);
 
 /// How many cases fit into one scene in which each meets its own objects only: each takes one bit of the masks.

@@ -8,6 +8,8 @@
 #include "support/answer.h"
 #include "support/same_bits.h"
 #include "unit/brute_force.h"
+#include "unit/turn_truth.h"
+#include "workloads/vectors.h"
 
 namespace radar::fuzz {
 
@@ -24,9 +26,7 @@ bool isFiniteAt(const MeshView& mesh, const Transform& pose) {
   return true;
 }
 
-/// It knows straight ways alone.
 bool isForBruteForce(const Scene& scene, const Query& query) {
-  if (query.turn) return false;
   const MeshView sensor = scene.mesh(query.mesh);
   if (!isFiniteAt(sensor, query.worldFromMesh)) return false;
   size_t pairs = 0;
@@ -64,8 +64,40 @@ std::string faultOfClearance(const oracle::Truth& truth, const Query& query, con
   return oracle::compareToTime(truth.contacts[0], query, result.lo) < 0 ? "the surfaces meet before lo" : "";
 }
 
+/// The largest number among the places of a query's sensor and of all objects.
+double farthest(const Scene& scene, const Query& query) {
+  double most = 0;
+  const auto add = [&](const MeshView& mesh, const Transform& pose) {
+    const tools::Bounds bounds = tools::boundsOf(mesh, pose);
+    for (size_t k = 0; k < 3; ++k) most = std::max({most, std::abs(bounds.low[k]), std::abs(bounds.high[k])});
+  };
+  if (!scene.mesh(query.mesh).indices.empty()) add(scene.mesh(query.mesh), query.worldFromMesh);
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    if (scene.hasObject(id)) add(scene.mesh(scene.object(id).mesh), scene.object(id).worldFromMesh);
+  }
+  for (const double x : query.turn->centre) most = std::max(most, std::abs(x));
+  for (const double x : query.motion.value_or(std::array<double, 3>{})) most = std::max(most, std::abs(x));
+  return most;
+}
+
+/// What is wrong with an answer to a query that turns, by exact tests of poses: surfaces cross before lo, or do not
+/// meet at hi.
+std::string faultOfTurn(const Scene& scene, const Query& query, const Result& result) {
+  constexpr int kTimes = 8;
+  if (query.skipOverlapping) return "";
+  const test::TurnTruth truth(query, scene);
+  const double slack = 1e-12 * (1 + std::abs(query.turn->angle)) * farthest(scene, query);
+  const double free = result.status == Status::clear ? 1 : result.lo;
+  for (int k = 0; k <= kTimes && free > 0; ++k) {
+    if (truth.meet((1 - 1e-12) * free * k / kTimes, slack)) return "the surfaces meet before lo";
+  }
+  const bool isDated = result.hi > 0 && result.hi <= 1 && !query.anyHit;
+  return isDated && !truth.meet(result.hi, query.clearance > 0 ? -slack : 0) ? "nothing meets at hi" : "";
+}
+
 std::string faultOf(const Scene& scene, const Query& query, const Result& result, std::span<const Result> hits,
                     std::span<const ObjectId> overlapping) {
+  if (query.turn) return faultOfTurn(scene, query, result);
   const oracle::Truth truth = oracle::truthOf(scene, query);
   if (query.clearance > 0) return faultOfClearance(truth, query, result);
   if (!query.anyHit) return oracle::faultOf(truth, query, result, hits, overlapping);

@@ -129,6 +129,11 @@ std::vector<std::string> seeds() {
  "queries": [{"id": "p", "scene": 1, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "clearance": 0.25},
  {"id": "q", "scene": 1, "sensor": [0], "dir": [1, 0, 0], "D": 3, "ignore_leaving": true, "hits": 2, "mode": "contact"}]})",
       head +
+          R"(["a.obj", "b.off"], "scenes": [{"instances": [[1, 1,0,0,2, 0,1,0,2, 0,0,1,0], [0]], "motions": [[1, 0, 1, 0]]}],
+ "queries": [{"id": "p", "scene": 0, "sensor": [0, 1,0,0,4, 0,1,0,0, 0,0,1,0.5], "turn": {"axis": [0, 1, 2], "angle": 4, "centre": [1, 0, 0]}},
+ {"id": "q", "scene": 0, "sensor": [1], "turn": {"axis": [0, 0, 1], "angle": -3, "centre": [2, 0, 0.5]}, "motion": [0, 0, 1], "clearance": 0.25},
+ {"id": "r", "scene": 0, "sensor": [1], "exclude": [1], "turn": {"axis": [1, 0, 0], "angle": 2, "centre": [0, 2, 0]}, "any_hit": true}]})",
+      head +
           R"(["a.obj", "b.off"], "chains": [{"links": [{"name": "x", "meshes": [[0], [1, 1,0,0,0, 0,1,0,0, 0,0,1,-2]]},
  {"name": "y", "parent": "x", "joint": "revolute", "axis": [0, 1, 1], "variable": "q", "meshes": [[1]]},
  {"name": "z", "parent": "y", "joint": "prismatic", "origin": [0,-1,0,3, 1,0,0,0, 0,0,1,0], "meshes": [[0]]}],

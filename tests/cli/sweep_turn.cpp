@@ -10,6 +10,7 @@ using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::pageData;
 using radar::test::Run;
+using radar::test::runLab;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;
 
@@ -38,11 +39,19 @@ TEST_CASE("sweep turns its sensor, and says when in the motion it meets what") {
   CHECK(answer["status"] == "hit");
   CHECK(std::abs(answer["fraction"].get<double>() * 3 - 1.57079632679) < 2e-6);
   const Run words = runProgram(folder, kQuarter);
+  CHECK(runProgram(folder, kQuarter + "--json --view v.html").out == run.out);
   CHECK_THAT(words.out, Contains("\nturns by 3 (171.887 degrees) about (0, 0, 2) through (1, -4, 0)\n") &&
                             Contains("hit: first contact after 52.3") && Contains("% of the motion\n") &&
                             Contains("no earlier; certainly at most "));
   CHECK_THAT(runProgram(folder, kQuarter + "--hits all --expect hit").out, Contains("of object 0 (post.obj)"));
-  REQUIRE(runProgram(folder, kQuarter + "--view v.html").status == 0);
+  const Run fine = runProgram(folder, kQuarter + "--json --tolerance 1e-9");
+  const auto width = [](const nlohmann::json& of) {
+    return of["fraction_hi"].get<double>() - of["fraction_lo"].get<double>();
+  };
+  CHECK(width(nlohmann::json::parse(fine.out)) < 1e-3 * width(answer));
+  const Run shown = runProgram(folder, kQuarter + "--view v.html");
+  REQUIRE(shown.status == 0);
+  CHECK(shown.out == words.out + "page: v.html\n");
   CHECK(pageData(folder.read("v.html"))["queries"]["turns"]["0"]["angle"] == 3);
   const Run free = runProgram(folder,
                               "sweep post.obj rod.obj --mode reference --at 6 -4 0 --turn 0 0 1 1.5 "
@@ -66,6 +75,17 @@ TEST_CASE("a sweep that turns has the answer of the same query in a file") {
   CHECK((run.status == 0 && found.status == 0));
   CHECK_THAT(run.out, Contains("fraction_lo"));
   CHECK(run.out == found.out);
+}
+
+TEST_CASE("radar-lab writes hard cases that turn as a query file") {
+  const ScratchFolder folder;
+  const Run written = runLab(folder, "hard-cases --family 'far centre' --cases 6 --out c");
+  INFO(written.err);
+  REQUIRE(written.status == 0);
+  CHECK_THAT(folder.read("c/queries.json"), Contains("\"turn\": {\"axis\": ["));
+  const Run run = runProgram(folder, "query c/queries.json --mode reference");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.out, Contains("\"fraction_hi\": "));
 }
 
 TEST_CASE("sweep refuses what is no turn, and what does not go with one, by the option's name") {

@@ -81,6 +81,7 @@ int sweep(const Options& options) {
     const std::span<const Device> devices = answering.answerer().devices();
     writePage(options.view, options.sweep.sensor + " in " + options.sweep.scene, workload, {&answer, 1},
               {.device = devices.empty() ? nullptr : &devices[0]});
+    (options.json ? std::cerr : std::cout) << "page: " << options.view << "\n";
   }
   return judge(answer.result.status, options.expect);
 }

@@ -81,6 +81,7 @@ constexpr QueryField kFields[] = {
          "size, or of the clearance if that is more",
      .cast = true,
      .sampled = Sampled::idle,
+     .option = true,
      .chain = true},
 };
 

@@ -1,4 +1,6 @@
 // Each library on cases whose answers are known, as the chart uses it.
+#include <cmath>
+
 #include "baselines/baseline.h"
 #include "support/catch.h"
 #include "workloads/shapes.h"
@@ -75,4 +77,24 @@ TEST_CASE("a hull closes a cup, triangles do not") {
     REQUIRE(t.has_value());
     CHECK(*t == Approx(row.family == "Bullet hull" ? 1.5 : 4.4).margin(1e-3));
   }
+}
+
+TEST_CASE("FCL finds how far a body is, and when it meets something on a way that turns") {
+  Workload workload;
+  workload.meshes = {makeBox({10, 1, 1}), makeBox({1, 1, 3})};
+  workload.scenes.emplace_back().instances = {{1, poseAt(-1, 6, 0)}};
+  const std::unique_ptr<RigidBodies> bodies = makeRigidBodies(workload);
+  REQUIRE(bodies != nullptr);
+  CHECK(bodies->distance({1, poseAt(4, 6, 0)}) == Approx(4));
+  CHECK(bodies->continuous({1, poseAt(9, 6, 0)}, poseAt(-11, 6, 0), 100).value_or(-1) == Approx(0.45).margin(0.011));
+  CHECK_FALSE(bodies->continuous({1, poseAt(9, 8, 0)}, poseAt(-11, 8, 0), 100).has_value());
+  // A rod about its middle, whose upper side passes the post's nearest edge.
+  const auto at = [](double s) {
+    const double angle = 2 * s, c = std::cos(angle), sine = std::sin(angle);
+    return std::vector{Instance{0, {{c, -sine, 0, 0, sine, c, 0, 2, 0, 0, 1, 0}}}};
+  };
+  const double expected = (std::atan2(3.5, -0.5) - std::asin(0.5 / std::hypot(0.5, 3.5))) / 2;
+  CHECK(bodies->stepped(64, at).value_or(-1) == Approx(expected).margin(1e-6));
+  CHECK(bodies->continuous(at(0)[0], at(1)[0].worldFromMesh, 200).value_or(-1) == Approx(expected).margin(0.006));
+  CHECK_FALSE(bodies->stepped(64, [&](double s) { return at(0.9 * expected * s); }).has_value());
 }

@@ -2,6 +2,7 @@
 // there are none.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,14 +26,21 @@ class Baseline {
   virtual std::optional<double> cast(const Query& query) = 0;
 };
 
-/// Least distances of bodies to a workload's first scene, as FCL computes them.
-class Distances {
+/// What FCL says of bodies among a workload's first scene, whose objects stand.
+class RigidBodies {
  public:
-  virtual ~Distances() = default;
-  virtual double of(const Instance& body) = 0;
+  virtual ~RigidBodies() = default;
+  /// The least distance of a body from the scene.
+  virtual double distance(const Instance& body) = 0;
+  /// First contact by discrete checks (steppedContact) of bodies that are at `at(s)`, for s from 0 to 1.
+  virtual std::optional<double> stepped(uint32_t steps, const std::function<std::vector<Instance>(double)>& at) = 0;
+  /// First contact by FCL's continuous mode, on a body's way to the pose `end`: its origin goes straight while it turns
+  /// evenly, by less than half a turn. In `steps`, since its conservative advancement finds nothing between meshes (FCL
+  /// 0.7.0), even where two boxes move straight onto each other.
+  virtual std::optional<double> continuous(const Instance& body, const Transform& end, uint32_t steps) = 0;
 };
 /// None if libraries are not built. The workload outlives it.
-std::unique_ptr<Distances> makeDistances(const Workload& workload);
+std::unique_ptr<RigidBodies> makeRigidBodies(const Workload& workload);
 
 /// A row of the chart: a library, used in one way.
 struct BaselineRow {

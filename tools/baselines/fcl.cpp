@@ -71,22 +71,76 @@ bool measurePair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data,
   return nearest == 0;
 }
 
-class FclDistances : public Distances {
+bool findPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
+  auto& meets = *static_cast<bool*>(data);
+  fcl::CollisionRequestd request;
+  fcl::CollisionResultd result;
+  meets = fcl::collide(a, b, request, result) > 0;
+  return meets;
+}
+
+class FclBodies : public RigidBodies {
  public:
-  explicit FclDistances(const Workload& workload) : shapes_(workload, modelOf) {
+  explicit FclBodies(const Workload& workload) : shapes_(workload, modelOf) {
     for (uint32_t i = 0; i < workload.objectCount(0); ++i) {
       objects_.push_back(placed(shapes_, workload.instance(0, i)));
       manager_.registerObject(objects_.back().get());
     }
     manager_.setup();
   }
-  double of(const Instance& body) override {
+
+  double distance(const Instance& body) override {
     double nearest = std::numeric_limits<double>::infinity();
     manager_.distance(placed(shapes_, body).get(), &nearest, measurePair);
     return nearest;
   }
 
+  std::optional<double> stepped(uint32_t steps, const std::function<std::vector<Instance>(double)>& at) override {
+    return steppedContact(1, steps, [&](double s) {
+      bool meets = false;
+      for (const Instance& body : at(s)) {
+        if (!meets) manager_.collide(placed(shapes_, body).get(), &meets, findPair);
+      }
+      return meets;
+    });
+  }
+
+  // It takes one pair a call, so the pairs are those whose boxes meet the box around the whole way.
+  std::optional<double> continuous(const Instance& body, const Transform& end, uint32_t steps) override {
+    const std::unique_ptr<fcl::CollisionObjectd> moving = placed(shapes_, body);
+    const fcl::Transform3d from = moving->getTransform(), to = transformOf(rigidPose(end));
+    const fcl::CollisionGeometryd& shape = *moving->collisionGeometry();
+    const double radius = shape.aabb_center.norm() + shape.aabb_radius;
+    const fcl::Vector3d low = from.translation().cwiseMin(to.translation()),
+                        high = from.translation().cwiseMax(to.translation());
+    fcl::Transform3d middle = fcl::Transform3d::Identity();
+    middle.translation() = 0.5 * (low + high);
+    fcl::CollisionObjectd region(std::make_shared<fcl::Boxd>(high - low + fcl::Vector3d::Constant(2 * radius)), middle);
+    Sweep sweep{moving.get(), &region, from, to, steps};
+    manager_.collide(&region, &sweep, sweepPair);
+    return sweep.first;
+  }
+
  private:
+  struct Sweep {
+    const fcl::CollisionObjectd *moving, *region;
+    fcl::Transform3d from, to;
+    uint32_t steps;
+    std::optional<double> first{};
+  };
+  static bool sweepPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
+    auto& sweep = *static_cast<Sweep*>(data);
+    const fcl::CollisionObjectd& object = a == sweep.region ? *b : *a;
+    const fcl::ContinuousCollisionRequestd request(sweep.steps, 1e-4, fcl::CCDM_LINEAR, fcl::GST_LIBCCD,
+                                                   fcl::CCDC_NAIVE);
+    fcl::ContinuousCollisionResultd result;
+    fcl::continuousCollide(sweep.moving->collisionGeometry().get(), sweep.from, sweep.to,
+                           object.collisionGeometry().get(), object.getTransform(), object.getTransform(), request,
+                           result);
+    if (result.is_collide) sweep.first = std::min(sweep.first.value_or(1), result.time_of_contact);
+    return false;
+  }
+
   Shapes shapes_;
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
   fcl::DynamicAABBTreeCollisionManagerd manager_;
@@ -139,8 +193,8 @@ class Fcl : public SceneBaseline {
 
 }  // namespace
 
-std::unique_ptr<Distances> makeDistances(const Workload& workload) {
-  return std::make_unique<FclDistances>(workload);
+std::unique_ptr<RigidBodies> makeRigidBodies(const Workload& workload) {
+  return std::make_unique<FclBodies>(workload);
 }
 
 std::vector<BaselineRow> fclRows() {

@@ -6,7 +6,7 @@ std::vector<BaselineRow> peerRows() {
   return {};
 }
 
-std::unique_ptr<Distances> makeDistances(const Workload&) {
+std::unique_ptr<RigidBodies> makeRigidBodies(const Workload&) {
   return nullptr;
 }
 

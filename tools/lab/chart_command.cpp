@@ -105,7 +105,7 @@ Json measure(const Options& options) {
   measureCases({extent, cases, methods}, report, options.out, [&] { progress.add(1); });
   if (options.has("edits")) measureEdits(device, extent, report);
   if (options.has("recorded")) measureRecorded(device, extent, report);
-  if (options.has("turns")) measureTurns(extent, makeDistances, report);
+  if (options.has("turns")) measureTurns(extent, makeRigidBodies, report);
   return report;
 }
 

@@ -4,6 +4,7 @@
 
 #include "measure/timing.h"
 #include "query/chain_motion.h"
+#include "query/turning.h"
 #include "radar/cpu_sweeper.h"
 #include "workloads/arm.h"
 #include "workloads/generate.h"
@@ -14,6 +15,7 @@ namespace radar::tools {
 namespace {
 
 constexpr double kTolerance = 1e-6;  // metres: where advancement says that links touch
+constexpr uint32_t kSteps = 64;      // of a sampler
 
 void addRow(Json& report, const std::string& workload, const std::string& method, size_t queries, double seconds,
             double times, Json touching) {
@@ -41,7 +43,36 @@ size_t touching(const Answers& answers, const Of& result) {
   return count;
 }
 
-void turnBoxes(SensorShape shape, const std::string& name, Extent extent, Json& report) {
+/// The first of some queries that turn, asked of FCL, too.
+void turnWithFcl(std::vector<Query> queries, const std::string& name, Extent extent, CpuSweeper& sweeper,
+                 RigidBodies& bodies, Json& report) {
+  queries.resize(std::min<size_t>(queries.size(), extent == Extent::full ? 64 : 4));
+  Answers answers;
+  const double ours = medianTime(extent, [&] { sweeper.run(queries, answers); });
+  addRow(report, name, "turning by 30 degrees, as FCL is asked", queries.size(), ours, 1,
+         touching(answers.results, [](const Result& r) { return r; }));
+  const auto ask = [&](const std::string& method, const std::function<bool(const Query&, const Turning&)>& meets) {
+    size_t touched = 0;
+    const auto all = [&] {
+      for (const Query& query : queries) touched += meets(query, Turning(query));
+    };
+    const double theirs = lapOf(all).wall;
+    addRow(report, name, method, queries.size(), theirs, theirs / ours, touched);
+  };
+  const auto at = [](const Query& query, const Turning& turning, double s) {
+    return turning.pose(query.worldFromMesh, s, turning.way());
+  };
+  ask(print("turning by 30 degrees, FCL's continuous mode, %u steps", kSteps),
+      [&](const Query& query, const Turning& turning) {
+        return bodies.continuous({query.mesh, query.worldFromMesh}, at(query, turning, 1), kSteps).has_value();
+      });
+  ask(print("turning by 30 degrees, FCL at %u steps", kSteps), [&](const Query& query, const Turning& turning) {
+    const auto placed = [&](double s) { return std::vector{Instance{query.mesh, at(query, turning, s)}}; };
+    return bodies.stepped(kSteps, placed).has_value();
+  });
+}
+
+void turnBoxes(SensorShape shape, const std::string& name, Extent extent, MakeRigidBodies* makeBodies, Json& report) {
   const Workload workload =
       makeWorkload(Table1{.boxes = 10'000, .sensors = extent == Extent::full ? 2'048u : 64u, .shape = shape});
   ScenePlayer player(workload);
@@ -68,11 +99,13 @@ void turnBoxes(SensorShape shape, const std::string& name, Extent extent, Json& 
     if (degrees == 0) first = seconds;
     addRow(report, name, degrees == 0 ? "straight" : "turning by " + print("%g", degrees) + " degrees", queries.size(),
            seconds, seconds / first, touching(answers.results, [](const Result& r) { return r; }));
+    const std::unique_ptr<RigidBodies> bodies = degrees == 30 ? makeBodies(workload) : nullptr;
+    if (bodies != nullptr) turnWithFcl(queries, name, extent, sweeper, *bodies, report);
   }
 }
 
 /// Goes on by as much as no link can move within the least distance.
-bool advance(const ArmCell& cell, const ChainQuery& query, Distances& distances) {
+bool advance(const ArmCell& cell, const ChainQuery& query, RigidBodies& bodies) {
   const ChainMotion motion(cell.chain, query);
   double s = 0;
   while (s < 1) {
@@ -81,7 +114,7 @@ bool advance(const ArmCell& cell, const ChainQuery& query, Distances& distances)
       const LinkWay way = LinkWay::between(cell.chain, kNone, link);
       const LinkMesh& mesh = cell.chain.links[link].meshes[0];
       const double length = 2 * mesh.linkFromMesh.m[11];
-      const double near = distances.of({mesh.mesh, product(motion.pose(way, s), mesh.linkFromMesh)});
+      const double near = bodies.distance({mesh.mesh, product(motion.pose(way, s), mesh.linkFromMesh)});
       if (near <= kTolerance) return true;
       step = std::min(step, near / motion.boundsFor(way, std::hypot(length, 0.1), 0).speed);
     }
@@ -90,7 +123,7 @@ bool advance(const ArmCell& cell, const ChainQuery& query, Distances& distances)
   return false;
 }
 
-void moveArm(double turn, Extent extent, MakeDistances* makeDistances, Json& report) {
+void moveArm(double turn, Extent extent, MakeRigidBodies* makeBodies, Json& report) {
   const ArmCell cell = makeArmCell({.motions = extent == Extent::full ? 4'000u : 40u, .turn = turn});
   ScenePlayer player(cell.workload);
   player.show(0);
@@ -111,25 +144,40 @@ void moveArm(double turn, Extent extent, MakeDistances* makeDistances, Json& rep
   if (free.empty()) return;
   const double ours = medianTime(extent, [&] { results = sweeper.run(free); }) / static_cast<double>(free.size());
   addRow(report, name, "free", free.size(), ours * static_cast<double>(free.size()), 1, touching(results, isTouching));
-  const std::unique_ptr<Distances> distances = makeDistances(cell.workload);
-  if (distances == nullptr) return;
-  // Without the links' distances from each other, which ours include.
+  const std::unique_ptr<RigidBodies> bodies = makeBodies(cell.workload);
+  if (bodies == nullptr) return;
+  // Without the links' conflicts with each other, which ours include.
   free.resize(std::min<size_t>(free.size(), extent == Extent::full ? 50 : 2));
-  size_t touched = 0;
-  const auto ask = [&] {
-    for (const ChainQuery& query : free) touched += advance(cell, query, *distances);
+  const auto ask = [&](const std::string& method, const std::function<bool(const ChainQuery&)>& meets) {
+    size_t touched = 0;
+    const auto everything = [&] {
+      for (const ChainQuery& query : free) touched += meets(query);
+    };
+    const double theirs = lapOf(everything).wall;
+    addRow(report, name, method, free.size(), theirs, theirs / static_cast<double>(free.size()) / ours, touched);
   };
-  const double theirs = lapOf(ask).wall;
-  addRow(report, name, "free, by FCL's distances", free.size(), theirs,
-         theirs / static_cast<double>(free.size()) / ours, touched);
+  ask("free, by FCL's distances", [&](const ChainQuery& query) { return advance(cell, query, *bodies); });
+  ask(print("free, by FCL at %u steps", kSteps), [&](const ChainQuery& query) {
+    const ChainMotion motion(cell.chain, query);
+    const auto placed = [&](double s) {
+      std::vector<Instance> links;
+      for (uint32_t link = 0; link < cell.chain.links.size(); ++link) {
+        const LinkMesh& mesh = cell.chain.links[link].meshes[0];
+        links.push_back(
+            {mesh.mesh, product(motion.pose(LinkWay::between(cell.chain, kNone, link), s), mesh.linkFromMesh)});
+      }
+      return links;
+    };
+    return bodies->stepped(kSteps, placed).has_value();
+  });
 }
 
 }  // namespace
 
-void measureTurns(Extent extent, MakeDistances* makeDistances, Json& report) {
-  turnBoxes(SensorShape::box, "boxes", extent, report);
-  turnBoxes(SensorShape::teapot, "teapots", extent, report);
-  for (const double turn : {0.2, 1.0}) moveArm(turn, extent, makeDistances, report);
+void measureTurns(Extent extent, MakeRigidBodies* makeBodies, Json& report) {
+  turnBoxes(SensorShape::box, "boxes", extent, makeBodies, report);
+  turnBoxes(SensorShape::teapot, "teapots", extent, makeBodies, report);
+  for (const double turn : {0.2, 1.0}) moveArm(turn, extent, makeBodies, report);
   partOf(report, "turns")["state"] = "done";
 }
 

@@ -7,11 +7,12 @@
 
 namespace radar::tools {
 
-using MakeDistances = std::unique_ptr<Distances>(const Workload&);
+using MakeRigidBodies = std::unique_ptr<RigidBodies>(const Workload&);
 
 /// Section turns, on one thread of the CPU: sensors among boxes that move straight, and that turn by 30 degrees on the
-/// same ways; and an arm's motions, of which the free ones are also asked of FCL, if it is there: by advancement, from
-/// the links' distances to the cell. Adds a row to the part `turns` for each.
-void measureTurns(Extent extent, MakeDistances* makeDistances, Json& report);
+/// same ways; and an arm's motions. Some of these are also asked of FCL, if it is there: turns by its continuous mode,
+/// free motions by advancement, from the links' distances to the cell, and both at 64 steps. Adds a row to the part
+/// `turns` for each; "times_the_first" of FCL's is that of ours to the same queries.
+void measureTurns(Extent extent, MakeRigidBodies* makeBodies, Json& report);
 
 }  // namespace radar::tools

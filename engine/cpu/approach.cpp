@@ -15,7 +15,7 @@ using exact::Corners, exact::DoubleDouble, exact::dot, exact::Nearest, exact::ne
 using exact::operator+, exact::operator-, exact::operator*;
 
 // Steps converge quadratically, or by a factor of two where the triangles pass each other just within the clearance.
-constexpr int kMostSteps = 200;
+constexpr int kMostSteps = 200, kNarrowSteps = 8;
 // More digits may tell whether triangles are within the clearance if less of it than this is known: of positions, as
 // those of triangles a million times as large. Likewise if the bounds on the distance differ by more of the positions'
 // error than this: the nearest points are those of the least square, which tells them to some 2^-26 only, or those of
@@ -137,7 +137,8 @@ std::optional<Found<Real>> search(const Pair<Real>& pair, Vector* across = nullp
   for (int i = 0; i < kMostSteps; ++i) {
     const Moment<Real> m = momentAt(pair, t, place);
     place = m.nearest.place;
-    const Real least = std::max(kHalf * pair.tolerance, Real{4} * m.error);
+    // Most brackets can be as narrow as rounding allows.
+    const Real least = std::max(i < kNarrowSteps ? Real{} : kHalf * pair.tolerance, Real{4} * m.error);
     if (m.most <= clearance) {
       found.hi = t;
       found.atLo = t > Real{} ? momentAt(pair, found.lo, place) : m;
@@ -173,7 +174,7 @@ std::optional<Found<Real>> search(const Pair<Real>& pair, Vector* across = nullp
       if (isApproaching) approaching = std::max(approaching, t);
       if (!isApproaching) receding = std::min(receding, t);
       const Real from = std::max(found.lo, approaching), to = std::min(end, receding);
-      step = std::max(Real{2} * step, least);
+      step = std::max(Real{8} * step, least);
       const Real next =
           isApproaching ? std::min({t + step, kHalf * t + kHalf * to, pair.distance}) : kHalf * from + kHalf * t;
       if (next == t || !(to - from > m.error)) return found;

@@ -313,3 +313,24 @@ TEST_CASE("of shapes that leave each other, a clearance larger than they opens f
   CHECK(move().results[0].object == ahead);
   CHECK(move().stats.pairs < all / 10);
 }
+
+TEST_CASE("where a corner, an edge or a face decides, a clearance's bracket is as narrow as rounding allows") {
+  Random random(7);
+  const auto point = [](const Vector& p) { return exact::Triangle{p, p, p}; };
+  // The object's farthest corner, along x, and how far beside the way of the sensor's point it is.
+  const exact::Triangle corner = point({0, 0, 0}), edge{{{0, 0, -9}, {0, 0, 9}, {0, 0, 9}}},
+                        face{{{0, -99, -99}, {0, 99, -99}, {0, 0, 99}}};
+  for (int i = 0; i < 1'000; ++i) {
+    const double y = random.uniform(-0.9, 0.9), z = random.uniform(-0.4, 0.4), x = random.uniform(2, 50);
+    const auto widthAt = [&](const exact::Triangle& object, long double before) {
+      const auto found = cpu::approach(point({-x, y, z}), object, along({1, 0, 0}, 100), 1, 1e-3, INFINITY);
+      REQUIRE(found);
+      CAPTURE(x, y, z, found->lo, found->hi);
+      CHECK((found->lo <= x - before && x - before <= found->hi));
+      return found->hi - found->lo;
+    };
+    CHECK(widthAt(corner, std::sqrt(1 - static_cast<long double>(y) * y - static_cast<long double>(z) * z)) < 1e-10);
+    CHECK(widthAt(edge, std::sqrt(1 - static_cast<long double>(y) * y)) < 1e-10);
+    CHECK(widthAt(face, 1) < 1e-10);
+  }
+}

@@ -12,6 +12,7 @@ using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::pageData;
 using radar::test::Run;
+using radar::test::runLab;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;
 
@@ -121,6 +122,8 @@ TEST_CASE("answers of chains go through shards, streams and tables, and are comp
   const Run compared = runProgram(folder, "compare a.jsonl b.jsonl");
   CHECK(compared.status == 1);
   CHECK_THAT(compared.out, Contains("to query \"folds\": other_link: 1 in a.jsonl, 0 in b.jsonl"));
+  checkRefused(folder, "scale q.json", "q.json: queries: expected queries of sensors alone, got \"folds\" of a chain");
+  checkRefused(folder, "chart --out c q.json", "q.json: queries: expected queries of sensors alone", runLab);
   checkRefused(folder, "scopes q.json --query folds --out s", "q.json: chain: expected a straight motion");
 }
 

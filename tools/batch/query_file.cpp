@@ -104,4 +104,14 @@ Workload QueryFile::all() && {
   return std::move(world_);
 }
 
+Workload queriesToMeasure(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                          const Outputs& outputs) {
+  QueryFile queries(file, warnings, outputs);
+  if (queries.count() == 0) throw InputError(file.string(), "queries", "expected at least one query, got none");
+  if (const std::optional<std::string>& moved = queries.modes().moved) {
+    throw InputError(file.string(), "queries", "expected queries of sensors alone, got \"" + *moved + "\" of a chain");
+  }
+  return std::move(queries).all();
+}
+
 }  // namespace radar::tools

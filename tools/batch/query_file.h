@@ -67,6 +67,10 @@ class QueryFile {
   std::string fingerprint_;
 };
 
+/// What a query file holds, for measuring. Throws InputError, too, if there is no query, or one of a chain.
+Workload queriesToMeasure(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                          const Outputs& outputs);
+
 /// Writes `folder`/queries.json, the meshes as binary PLY, whose floats are exact, and a scene of more than 64
 /// instances as an instance file; makes the folder. `binary`: the queries as an array in queries.npy. Reading it gives
 /// the same workload to the bit (a mesh's name is its file's then, and names of objects are not kept, nor, if binary,

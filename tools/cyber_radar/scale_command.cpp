@@ -70,9 +70,8 @@ std::vector<ScalePoint> filePoints(const Options& options) {
   std::vector<std::string> warnings;
   Outputs outputs;
   if (!options.out.empty()) outputs.addIn("--out", options.out, {"report.json", "trace.json"});
-  const Workload whole = QueryFile(options.file, warnings, outputs).all();
+  const Workload whole = queriesToMeasure(options.file, warnings, outputs);
   printWarnings(warnings);
-  if (whole.queries.empty()) throw InputError(options.file, "queries", "expected at least one query, got none");
   std::vector<ScalePoint> points;
   if (options.sensors.empty()) points.push_back(firstOf(whole, 0));
   for (const uint32_t most : options.sensors) points.push_back(firstOf(whole, most));

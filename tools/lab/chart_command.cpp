@@ -63,8 +63,7 @@ std::vector<Case> casesOf(const Options& options, Extent extent) {
   Outputs outputs;
   outputs.addIn("--out", options.out, {"report.json"});
   for (const std::string& file : options.files) {
-    Workload workload = QueryFile(file, warnings, outputs).all();
-    if (workload.queries.empty()) throw InputError(file, "queries", "expected at least one query, got none");
+    const Workload workload = queriesToMeasure(file, warnings, outputs);
     cases.push_back({.section = "front", .workload = nameFor(file, cases), .about = "Queries of " + file, .make = [=] {
                        return workload;
                      }});

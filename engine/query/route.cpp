@@ -16,12 +16,13 @@ constexpr size_t kWorthThread = 4096;
 // Whether a query is plain (SearchNeeds) and certainly valid, as most are.
 bool isPlain(const Query& query, const Scene& scene) {
   const Scene::Impl& impl = scene.impl();
-  const bool hasOptions = query.turn || query.motion || impl.moving > 0 || !query.exclude.empty() ||
-                          query.ignoreLeaving || query.clearance != 0 || query.slack || query.tolerance ||
-                          hasLists(query) || query.hits != 1 || query.resolution > kMaxResolution;
+  const bool hasOptions = query.turn || impl.moving > 0 || !query.exclude.empty() || query.ignoreLeaving ||
+                          query.clearance != 0 || query.slack || query.tolerance || hasLists(query) ||
+                          query.hits != 1 || query.resolution > kMaxResolution;
   if (hasOptions || !scene.hasMesh(query.mesh)) return false;
-  const double size = norm1(query.direction);
-  const bool isUsual = size >= 0x1p-1000 && size <= 0x1p1000 && query.distance >= 0 && query.distance <= 0x1p1000;
+  const double size = norm1(query.direction), far = 0x1p1000;
+  const bool isUsual = query.motion ? size == 0 && query.distance == 0 && norm1(*query.motion) <= far
+                                    : size >= 1 / far && size <= far && query.distance >= 0 && query.distance <= far;
   return isUsual && isSurelyValid(query.worldFromMesh);
 }
 

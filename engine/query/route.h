@@ -20,7 +20,7 @@ Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise);
 /// What answering a query takes, so that one look at it suffices.
 struct SearchNeeds {
   Route route = Route::cpu;
-  bool isPlain = false;  ///< no options but a mask and `anyHit`: the answer is what one search finds
+  bool isPlain = false;  ///< no options but a mask and `anyHit`: what one search finds is the answer
   bool ignoresLeaving = false, hasClearance = false, excludes = false, lists = false;
   SearchNeeds() = default;
   /// Of a valid query.

@@ -258,13 +258,15 @@ bool ContactRunner::answerGroup(Flight& flight, const SearchGroup& group, std::s
 void ContactRunner::answerLeft(Flight& flight) {
   std::vector<size_t> left = std::exchange(flight.left, {});
   if (left.empty()) return;
-  std::sort(left.begin(), left.end());
+  if (!std::ranges::is_sorted(left)) std::ranges::sort(left);
   const Clock::time_point start = Clock::now();
   Answers& answers = flight.answers;
-  for (const size_t i : left) {
-    answers.results[i] = Result();
-    flight.open[i] = 0;
-  }
+  parallelFor(left.size(), kWorthThread, options_.cpuThreads, [&](unsigned, size_t from, size_t to) {
+    for (const size_t i : std::span(left).subspan(from, to - from)) {
+      answers.results[i] = Result();
+      flight.open[i] = 0;
+    }
+  });
   const size_t first = left.front(), count = left.size();
   const uint64_t before = cpu_.pairs();
   if (left.back() - first + 1 == count) {  // without gaps

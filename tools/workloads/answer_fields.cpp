@@ -1,12 +1,14 @@
 #include "workloads/answer_fields.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 #include "radar/displacement.h"
 
@@ -188,17 +190,33 @@ double got(const char* from) {
   return number == static_cast<Number>(-1) && !std::is_floating_point_v<Number> ? kNull : static_cast<double>(number);
 }
 
-size_t sizeOf(const AnswerField& field) {
+constexpr size_t sizeOf(const AnswerField& field) {
   return static_cast<size_t>(field.type[2] - '0');
 }
 
 /// Calls `work` with a number of the member's type.
 template <class Work>
-auto inType(const AnswerField& field, const Work& work) {
+constexpr auto inType(const AnswerField& field, const Work& work) {
   if (field.isReal()) return work(double{});
   if (sizeOf(field) == 1) return work(int8_t{});
   return sizeOf(field) == 4 ? work(uint32_t{}) : work(int64_t{});
 }
+
+/// A member of a row, compiled for each, since arrays have millions of rows.
+template <size_t index>
+void putMember(const AnswerRow& row, bool keepsInfinities, char* to) {
+  static constexpr const AnswerField& kField = kFields[index];
+  for (size_t part = 0; part < kField.width; ++part) {
+    double value = kField.value(row, part);
+    if (!keepsInfinities && std::isinf(value)) value = kNull;
+    inType(kField, [&]<class Number>(Number) { put<Number>(to + sizeof(Number) * part, value); });
+  }
+}
+
+constexpr auto kPutMembers = []<size_t... index>(std::index_sequence<index...>) {
+  return std::array{&putMember<index>...};
+}
+(std::make_index_sequence<std::size(kFields)>());
 
 }  // namespace
 
@@ -265,11 +283,7 @@ std::string wordsOf(const AnswerField& field) {
 void AnswerLayout::write(const AnswerRow& row, char* record) const {
   static_assert(std::endian::native == std::endian::little);
   for (const auto& [field, place] : members) {
-    for (size_t part = 0; part < field->width; ++part) {
-      double value = field->value(row, part);
-      if (std::isinf(value) && !keepsInfinities) value = kNull;
-      inType(*field, [&]<class Number>(Number) { put<Number>(record + place + sizeof(Number) * part, value); });
-    }
+    kPutMembers[static_cast<size_t>(field - kFields)](row, keepsInfinities, record + place);
   }
 }
 

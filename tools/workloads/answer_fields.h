@@ -41,7 +41,7 @@ struct AnswerType {
   size_t width = 1;                      ///< numbers
   std::span<const char* const> words{};  ///< of a code; of what is none, "none"
 
-  bool isReal() const { return type[1] == 'f'; }
+  constexpr bool isReal() const { return type[1] == 'f'; }
   bool isTruth() const;  ///< the words are true and false
 };
 

@@ -157,7 +157,7 @@ void ContactPass::recordEncoding(const gpu::Commands& commands, const OpenStage&
   computeWriteToComputeReadWrite(commands);
 }
 
-// `isLast`: searches that this leaves unfinished are abandoned.
+// `isLast`: searches that this leaves unfinished are abandoned. The caller records the barrier after it.
 void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, bool isLast) {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = scene_.buffers();
@@ -182,7 +182,6 @@ void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, boo
   computeWriteToComputeReadWrite(commands);
   run_(commands, shaders::kCollect, kCollectGroups, CollectPush{round, taskRoom_, isLast ? 1u : 0u},
        {{kSlotCounts, counts()}, {kSlotStates, states()}, {kSlotTasks, from}, {kSlotSpilled, to}});
-  computeWriteToComputeReadWrite(commands);
 }
 
 void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast) {
@@ -191,7 +190,10 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
   rounds_ = rounds;
   if (searchCount_ == 0) return;
   stage("search");
-  for (uint32_t round = 0; round < rounds; ++round) recordRound(commands, round, isLast && round + 1 == rounds);
+  for (uint32_t round = 0; round < rounds; ++round) {
+    if (round > 0) computeWriteToComputeReadWrite(commands);
+    recordRound(commands, round, isLast && round + 1 == rounds);
+  }
   stage("solve");
   computeWriteToIndirect(commands);
   const Groups perCandidates{lists.counts, offsetof(SearchCounts, filterGroups)};

@@ -1,5 +1,6 @@
 // The engine on a host's device. The host owns instance, device and queue; the engine borrows them and destroys
 // nothing.
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -10,6 +11,7 @@
 #include "support/small_scenes.h"
 #include "support/test_device.h"
 #include "support/watched_vulkan.h"
+#include "sweep/sweeper.h"
 
 namespace {
 
@@ -88,6 +90,29 @@ TEST_CASE("each label that begins in a command buffer ends there, and none begin
   host.handles.debugNames = false;
   work();
   CHECK(begun() == asked);
+}
+
+TEST_CASE("a batch takes two dispatches and two barriers for each round of its search, and few beside them") {
+  Boxes boxes;
+  test::Host host;
+  const Device device = Device::adopt(host.handles);
+  for (const uint32_t rounds : {2u, 4u}) {
+    Sweeper::Impl sweeper(device.impl(), boxes.scene, kOnDevice, std::make_shared<GpuScene>(device.impl()),
+                          {.rounds = rounds}, false);
+    const auto run = [&] {
+      Flight flight({&boxes.query, 1}, false);
+      sweeper.begin(flight, Mode::contact);
+      sweeper.finish(flight);
+      CHECK(flight.answers.results[0].status == Status::hit);
+      CHECK(flight.answers.stats.submissions == 1);
+    };
+    run();  // which uploads the scene
+    const auto dispatched = [] { return test::callsOf("vkCmdDispatch") + test::callsOf("vkCmdDispatchIndirect"); };
+    const uint64_t dispatches = dispatched(), barriers = test::callsOf("vkCmdPipelineBarrier2");
+    run();
+    CHECK(dispatched() - dispatches == (device.doubles() ? 8 : 4) + 2 * rounds);
+    CHECK(test::callsOf("vkCmdPipelineBarrier2") - barriers == (device.doubles() ? 11 : 7) + 2 * rounds);
+  }
 }
 
 TEST_CASE("adopt throws and names a function that the host's loader lacks") {

@@ -101,6 +101,28 @@ TEST_CASE("the answers have the same bits with the least and the most of every n
   CHECK(differenceOf(DeviceSearch(batch.scene, tuning).run(batch.queries).results, usual) == "");
 }
 
+TEST_CASE("of a batch that is given up half-way, memory that had other answers keeps none of them") {
+  const test::Case asked =
+      test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 1000, .sensors = 600, .shape = tools::SensorShape::box}));
+  const std::vector<Query> others(asked.queries.rbegin(), asked.queries.rend());
+  const std::vector<Result> right = DeviceSearch(asked.scene).run(asked.queries).results;
+  std::vector<SearchNeeds> needs(asked.queries.size());
+  requireValid(asked.queries, asked.scene, Mode::contact, false, 1, needs);
+  Sweeper::Impl sweeper(test::device().impl(), asked.scene, {.cpuBatch = 0},
+                        std::make_shared<GpuScene>(test::device().impl()), {.searches = 100}, false);
+  Flight flight(asked.queries, needs, false, {}, DeviceSearch(asked.scene).run(others));
+  sweeper.begin(flight, Mode::contact);
+  sweeper.abandon(flight);
+  size_t answered = 0;
+  for (size_t i = 0; i < right.size(); ++i) {
+    const Result& result = flight.answers.results[i];
+    answered += result.status != Status::invalid;
+    CHECK(test::sameBits(result, result.status != Status::invalid ? right[i] : Result()));
+  }
+  CHECK(answered >= 100);
+  CHECK(answered < right.size());
+}
+
 TEST_CASE("submissions record as many rounds as batches have taken lately, and all once these do not suffice") {
   Rounds rounds(8, true);
   for (const uint32_t expected : {6u, 4u, 2u, 2u}) {

@@ -260,3 +260,43 @@ TEST_CASE("a glTF file of many queries and objects is cut as a page is, and says
   CHECK(file.bytes.find("\"object 100000\"") != std::string::npos);
   CHECK(file.bytes.find("\"object 99999\"") == std::string::npos);
 }
+
+TEST_CASE("balls and capsules are drawn as what they are, where their points and segments are") {
+  Workload workload;
+  workload.meshes = {{.name = "ball", .positions = {0, 0, 0}, .indices = {0, 0, 0}, .radius = 2},
+                     {.name = "point", .positions = {1, 2, 3}, .indices = {0, 0, 0}},
+                     {.name = "rod", .positions = {0, 0, 0, 3, 0, 0}, .indices = {0, 1, 1}, .radius = 0.5},
+                     {.name = "face", .positions = {0, 0, 0, 3, 0, 0, 0, 1, 0}, .indices = {0, 1, 2}, .radius = 0.5}};
+  workload.scenes.push_back({"scene", {}, {}, {}});
+  const Transform pose{{0, -2, 0, 5, 2, 0, 0, 6, 0, 0, 2, 7}};  // a quarter turn about z, twice as large
+  for (uint32_t mesh = 0; mesh < 4; ++mesh) {
+    QuerySpec& query = workload.queries.emplace_back();
+    query.id = workload.meshes[mesh].name;
+    query.setSensor({mesh, pose});
+    query.direction = {0, 0, 1};
+    query.distance = 1;
+    query.clearance = mesh == 1 ? 0.75 : workload.meshes[mesh].radius + 0.25;
+  }
+  const Loaded loaded(gltfOf(workload, std::vector<Result>(4, Result(Status::clear)), {}).bytes);
+  const auto check = [&](const char* name, const Vec3& from, const Vec3& to, double radius) {
+    const std::vector<Vec3> corners = loaded.corners(name);
+    REQUIRE(corners.size() > 500);
+    const Vec3 along = to - from;
+    double least = INFINITY, most = 0, farthest = -INFINITY, nearest = INFINITY;
+    for (const Vec3& corner : corners) {
+      const double at = dot(along, along) > 0 ? dot(corner - from, along) / dot(along, along) : 0;
+      const double distance = lengthOf(corner - (from + std::clamp(at, 0.0, 1.0) * along));
+      least = std::min(least, distance), most = std::max(most, distance);
+      nearest = std::min(nearest, at), farthest = std::max(farthest, at);
+    }
+    CHECK(least > radius - 1e-5);
+    CHECK(most < radius + 1e-5);
+    if (dot(along, along) == 0) return;
+    CHECK(nearest == Approx(-radius / lengthOf(along)));
+    CHECK(farthest == Approx(1 + radius / lengthOf(along)));
+  };
+  check("ball", {5, 6, 7}, {5, 6, 7}, 2);
+  check("point", {1, 8, 13}, {1, 8, 13}, 0.75);
+  check("rod", {5, 6, 7}, {5, 12, 7}, 0.5);
+  checkPlaced(loaded.corners("face"), workload.meshes[3], pose);
+}

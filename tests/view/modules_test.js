@@ -31,9 +31,10 @@ const STATUSES = ["hit", "clear", "overlap", "undecided", "invalid"];
 
 /**
  * What page.cpp writes of a scene of cubes of side 2 at x = 0, 10, 20, and sensors like them, which move 10 along x.
- * `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left, ignored, id, at, asked, step, turn, move}.
+ * `mesh`: what else is said of the cube. `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left,
+ * ignored, id, at, asked, step, turn, move}.
  */
-function dataOf(rows, chains = []) {
+function dataOf(rows, { chains = [], mesh = {} } = {}) {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)));
   const by = (name) => Object.fromEntries(rows.flatMap((row, i) => (row[name] ? [[i, row[name]]] : [])));
   const objects = [0, 10, 20].map((x) => [x, 0, 0]);
@@ -50,12 +51,26 @@ function dataOf(rows, chains = []) {
   return new Data(JSON.stringify({
     title: "", notes: [], tour: [], none: NONE, statuses: STATUSES, chains, scenes: [scene], queries, answers: answersOf(rows),
     hits: { ...answersOf(rows.flatMap(({ hits = [] }) => hits)), first: array("u4", firstOf(rows)) },
-    meshes: [{ name: "cube", positions: array("f4", corners), indices: array("u4", [0, 1, 3, 4, 5, 7]) }],
+    meshes: [{ name: "cube", positions: array("f4", corners), indices: array("u4", [0, 1, 3, 4, 5, 7]), ...mesh }],
     left: by("left"), reasons: by("reasons"), others: by("others"), scopes: {},
   }));
 }
 const HIT = { status: "hit", t: 3, lo: 3, hi: 3, object: 0, tri_a: 0, tri_b: 1, gap: 0, point: [-1, 0, 0], normal: [-1, 0, 0] };
 const CLEAR = { status: "clear", t: Infinity, lo: Infinity, hi: Infinity };
+
+test("a ball touches, and keeps its clearance, beyond its radius; a rounded mesh says how near it comes", () => {
+  const near = { ...HIT, gap: 2.5, asked: { clearance: 0.5 } };
+  const wordsOf = (sensor, row) => inWords(dataOf([row], { mesh: sensor }).answers[0]);
+  const ball = { isRound: true, radius: 2, name: "ball" };
+  const touching = wordsOf(ball, { ...HIT, gap: 2 });
+  assert.equal(touching[0], "Free for 3, then it touches object 0 (ball).");
+  assert.ok(touching.includes("Sensor: ball, drawn with 2 triangles, 2 × 2 × 2"), touching.join("\n"));
+  assert.equal(wordsOf(ball, near)[0], "Comes within 0.5 of object 0 (ball) after 3.");
+  assert.ok(wordsOf(ball, near).includes("The gap is then 0.5 long (drawn)."));
+  const rounded = wordsOf({ radius: 2 }, near);
+  assert.equal(rounded[0], "Comes within 2.5 of object 0 (cube) after 3.");
+  assert.ok(rounded.includes("Sensor: cube, 2 triangles, 2 × 2 × 2, rounded by 2, which is not drawn"));
+});
 
 test("an answer says how far its sensor goes, and when it touches something", () => {
   const data = dataOf([

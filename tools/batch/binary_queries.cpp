@@ -189,6 +189,7 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
     if (query.hits > 1 && query.anyHit) refuse(*fields_[i], index, "expected 1 beside \"any_hit\"");
     if (query.turn && (query.speed || query.ignoreLeaving)) refuse(*fields_[i], index, "expected none beside a turn");
   }
+  query.clearance = withRadius(query.clearance, world_.meshes[query.mesh].radius);
   if (mode_) {
     query.mode = static_cast<AnswerMode>(whole(*mode_, index, 2, "0 for sampled, 1 for contact or 2 for reference"));
     const std::string reason = exactOnly(world_, query);

@@ -185,6 +185,7 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
     }
   }
   readFields(query, world.objectCount(spec.scene), spec);
+  spec.clearance = withRadius(spec.clearance, world.meshes[spec.mesh].radius);
   // A turn has no length, and goes into what it rests on in one place while it leaves it in another.
   for (const auto& [key, isGiven] :
        {std::pair{"speed", spec.speed.has_value()}, {"ignore_leaving", spec.ignoreLeaving}}) {

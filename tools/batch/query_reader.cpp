@@ -3,6 +3,7 @@
 #include <cstring>
 #include <iostream>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <span>
 #include <unordered_set>
@@ -12,6 +13,7 @@
 #include "batch/query_file.h"
 #include "batch/query_json.h"
 #include "batch/query_reader.h"
+#include "import/float_vertices.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
 
@@ -26,6 +28,41 @@ struct MeshSource {
   double scale = 1;
 };
 
+double radiusFrom(const JsonValue& value) {
+  const double radius = value.number();
+  if (!(radius >= 0 && radius <= 0x1p1000)) value.expected("a number from 0 to 2^1000");
+  return radius;
+}
+
+/// {"shape": "ball", "radius": 2}, {"shape": "capsule", "from": [0,0,0], "to": [0,0,3], "radius": 2}
+FileMesh shapeFrom(const JsonValue& value) {
+  const JsonValue kind = value.member("shape");
+  const std::string name = kind.string();
+  if (name != "ball" && name != "capsule") kind.expected("\"ball\" or \"capsule\"");
+  std::vector<double> corners(3);
+  if (name == "ball") {
+    requireKnownKeys(value, {"shape", "radius"});
+  } else {
+    requireKnownKeys(value, {"shape", "from", "to", "radius"});
+    corners.clear();
+    for (const char* key : {"from", "to"}) {
+      const JsonValue end = value.member(key);
+      if (end.size() != 3) end.expected("3 numbers");
+      for (size_t k = 0; k < 3; ++k) {
+        corners.push_back(end[k].number());
+        if (std::abs(corners.back()) > double{std::numeric_limits<float>::max()})
+          end[k].expected("a number that floats hold");
+      }
+    }
+  }
+  const uint32_t last = static_cast<uint32_t>(corners.size() / 3) - 1;
+  const std::vector<uint32_t> triangle{0, last, last};
+  const FloatVertices floats = floatVertices(corners, triangle);
+  FileMesh mesh{{.name = name, .positions = floats.positions, .indices = triangle}, floats.base};
+  mesh.radius = radiusFrom(value.member("radius"));
+  return mesh;
+}
+
 class Reader {
  public:
   Reader(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs)
@@ -36,8 +73,10 @@ class Reader {
  private:
   std::string content() const;
   std::filesystem::path pathOf(const JsonValue& value) const;
-  MeshSource sourceOf(const JsonValue& value) const;
+  /// `more`: a key that it may have beside its file and scale.
+  MeshSource sourceOf(const JsonValue& value, std::string_view more = "scale") const;
   void readMesh(const JsonValue& value);
+  FileMesh fileMeshFrom(const JsonValue& value);
   void readScene(const JsonValue& scene);
   void readInstances(const JsonValue& scene, SceneSpec& spec);
   const Assembly& assembly(const std::filesystem::path& file, double scale);
@@ -73,10 +112,10 @@ std::filesystem::path Reader::pathOf(const JsonValue& value) const {
   return path;
 }
 
-MeshSource Reader::sourceOf(const JsonValue& value) const {
+MeshSource Reader::sourceOf(const JsonValue& value, std::string_view more) const {
   if (value.json().is_string()) return {value.string(), pathOf(value)};
   if (!value.json().is_object()) value.expected("a string or an object");
-  requireKnownKeys(value, {"file", "scale"});
+  requireKnownKeys(value, {"file", "scale", more});
   MeshSource source{value.member("file").string(), pathOf(value.member("file"))};
   value.ifHas("scale", [&](const JsonValue& scale) { source.scale = scale.number(); });
   return source;
@@ -115,16 +154,23 @@ JsonQueryFile Reader::read() {
 }
 
 void Reader::readMesh(const JsonValue& value) {
-  const MeshSource source = sourceOf(value);
-  const FileMesh mesh = value.guard([&] {
+  const FileMesh mesh = value.json().is_object() && value.has("shape") ? shapeFrom(value) : fileMeshFrom(value);
+  workload_.meshes.push_back(mesh);
+  bases_.push_back(mesh.base);
+  fingerprint_.add(mesh.base);
+}
+
+FileMesh Reader::fileMeshFrom(const JsonValue& value) {
+  const MeshSource source = sourceOf(value, "radius");
+  FileMesh mesh = value.guard([&] {
     const MeshName split = splitMeshName(source.path);
     return split.node ? assembly(split.file, source.scale).meshOf(split.file.string(), *split.node)
                       : tools::readMesh(source.path, warnings_, source.scale);
   });
-  workload_.meshes.push_back(mesh);
-  bases_.push_back(mesh.base);
-  fingerprint_.add(mesh.base);
-  workload_.meshes.back().name = source.name;
+  mesh.name = source.name;
+  if (value.json().is_object())
+    value.ifHas("radius", [&](const JsonValue& radius) { mesh.radius = radiusFrom(radius); });
+  return mesh;
 }
 
 const Assembly& Reader::assembly(const std::filesystem::path& file, double scale) {
@@ -146,6 +192,12 @@ void Reader::readScene(const JsonValue& scene) {
     if (workload_.scenes[*spec.base].base) base.expected("a scene that has no base itself");
   });
   readInstances(scene, spec);
+  for (size_t i = 0; i < spec.instances.size(); ++i) {
+    const uint32_t mesh = spec.instances[i].mesh;
+    if (workload_.meshes[mesh].radius == 0) continue;
+    scene.refuse("instance " + std::to_string(i) +
+                 ": expected a mesh without a radius, which only sensors have, got mesh " + std::to_string(mesh));
+  }
   const size_t objects = (spec.base ? workload_.scenes[*spec.base].instances.size() : 0) + spec.instances.size();
   scene.ifHas("masks", [&](const JsonValue& masks) { spec.masks = readMasks(masks, objects); });
   scene.ifHas("motions", [&](const JsonValue& motions) { spec.motions = readMotions(motions, objects); });

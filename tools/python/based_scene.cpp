@@ -15,10 +15,13 @@ const Transform& BasedScene::given(ObjectId object) const {
   return found == given_.end() ? scene_.object(object).worldFromMesh : found->second;
 }
 
-MeshId BasedScene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices, const Base& base) {
+MeshId BasedScene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices, const Base& base,
+                           double radius) {
   const MeshId mesh = scene_.addMesh(positions, indices);
   bases_.resize(std::max<size_t>(bases_.size(), mesh + 1));
   bases_[mesh] = base;
+  radii_.resize(bases_.size());
+  radii_[mesh] = radius;
   return mesh;
 }
 

@@ -17,12 +17,14 @@ class BasedScene {
 
   const Scene& scene() const { return scene_; }
   const Base& base(MeshId mesh) const { return bases_.at(mesh); }
+  /// Of a round sensor (radar/shapes.h), else 0; also of a mesh that does not exist.
+  double radius(MeshId mesh) const { return mesh < radii_.size() ? radii_[mesh] : 0; }
   /// The scene's pose for one that is given.
   Transform placed(MeshId mesh, const Transform& given) const;
   const Transform& given(ObjectId object) const;
 
   // As those of Scene.
-  MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices, const Base& base);
+  MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices, const Base& base, double radius);
   void setPositions(MeshId mesh, std::span<const float> positions, const Base& base);
   void removeMesh(MeshId mesh) { scene_.removeMesh(mesh); }
   ObjectId addObject(const Object& object);
@@ -33,6 +35,7 @@ class BasedScene {
  private:
   Scene scene_;
   std::vector<Base> bases_;              // by mesh
+  std::vector<double> radii_;            // likewise
   std::map<ObjectId, Transform> given_;  // where the scene's is another
 };
 

@@ -85,7 +85,9 @@ void Reader::readOptions(Query& query) const {
   if (input_.leaving.data) read(input_.leaving, &query.ignoreLeaving, 1);
   readOptional(input_.slacks, query.slack);
   readOptional(input_.tolerances, query.tolerance);
-  if (input_.clearances.data) read(input_.clearances, &query.clearance, 1);
+  double clearance = input_.options.clearance;
+  if (input_.clearances.data) read(input_.clearances, &clearance, 1);
+  query.clearance = tools::withRadius(clearance, scene_.radius(query.mesh));
   if (!input_.hits.data) return;
   read(input_.hits, &query.hits, 1);
   if (query.hits == 0) query.hits = kAllHits;

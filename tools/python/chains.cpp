@@ -206,7 +206,7 @@ std::string movesPage(const CastingScene& scene, const std::map<uint32_t, std::s
                     *const ends = numbers<double>(arrays, "end", width * shown),
                     *const bases = numbers<double>(arrays, "base", 16 * shown);
   requireCount(records, "records", shown);
-  tools::Workload workload = workloadOf(scene.scene(), objectNames);
+  tools::Workload workload = workloadOf(scene.based(), objectNames);
   workload.chains.push_back({chainFrom(scene.based(), chain), linkNames, {}});
   std::vector<Result> results;
   tools::PageContent content{.title = title, .queries = count, .reasons = reasons};

@@ -12,11 +12,13 @@ namespace radar::python {
 
 using tools::Workload;
 
-Workload workloadOf(const Scene& scene, const std::map<uint32_t, std::string>& objectNames) {
+Workload workloadOf(const BasedScene& based, const std::map<uint32_t, std::string>& objectNames) {
+  const Scene& scene = based.scene();
   Workload workload;
   for (MeshId id = 0; id < scene.meshLimit(); ++id) {
     tools::MeshData& mesh = workload.meshes.emplace_back();
     mesh.name = "mesh " + std::to_string(id);
+    mesh.radius = based.radius(id);
     if (!scene.hasMesh(id)) continue;
     const MeshView view = scene.mesh(id);
     mesh.positions.assign(view.positions.begin(), view.positions.end());
@@ -53,7 +55,7 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
   const char* const listed =
       hits ? recordsOf(hits->first, ofHits, static_cast<size_t>(hits->second.at(shown))) : nullptr;
 
-  Workload workload = workloadOf(scene.scene(), objectNames);
+  Workload workload = workloadOf(scene.based(), objectNames);
   std::vector<Result> results;
   tools::PageContent content{.title = title, .queries = count, .reasons = reasons, .left = left};
   for (size_t i = 0; i < shown; ++i) {
@@ -76,6 +78,7 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
       const double value = numbers<double>(arrays, field.name, shown)[i];
       tools::setValue(query, field, field.word && value == 0 ? std::numeric_limits<double>::infinity() : value);
     }
+    query.clearance = tools::withRadius(query.clearance, scene.based().radius(query.mesh));
     for (py::ssize_t k = 0; k < excluded.shape(1); ++k) {
       if (const int64_t object = excluded.at(i, k); object >= 0) query.exclude.push_back(static_cast<ObjectId>(object));
     }

@@ -14,7 +14,7 @@
 namespace radar::python {
 
 /// What a page shows of a scene as it is now; numbers of meshes and objects are the scene's.
-tools::Workload workloadOf(const Scene& scene, const std::map<uint32_t, std::string>& objectNames);
+tools::Workload workloadOf(const BasedScene& based, const std::map<uint32_t, std::string>& objectNames);
 
 /// What _engine.pyi says of page(): HTML, of a scene as it is now.
 std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,

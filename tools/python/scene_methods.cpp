@@ -43,10 +43,10 @@ BasedScene::Base baseFrom(const Array<double>& numbers) {
 }
 
 MeshId addMesh(CastingScene& scene, const Array<float>& vertices, const Array<uint32_t>& faces,
-               const Array<double>& base) {
+               const Array<double>& base, double radius) {
   MeshId mesh = kNone;
   edit(scene, [&, positions = copyOf(vertices), indices = copyOf(faces), from = baseFrom(base)](BasedScene& to) {
-    mesh = to.addMesh(positions, indices, from);
+    mesh = to.addMesh(positions, indices, from, radius);
   });
   return mesh;
 }
@@ -143,7 +143,13 @@ py::tuple objects(const CastingScene& scene) {
 
 void defineScene(py::module_& module, py::class_<CastingScene>& scene) {
   scene.def(py::init(&makeScene), py::arg("device"), py::arg("pool"), py::arg("cpu_batch"), py::arg("threads"))
-      .def("add_mesh", &addMesh)
+      .def("add_mesh", &addMesh, py::arg("vertices"), py::arg("faces"), py::arg("base"), py::arg("radius") = 0)
+      .def("radii",
+           [](const CastingScene& of) {
+             std::vector<double> radii;
+             for (MeshId id = 0; id < of.scene().meshLimit(); ++id) radii.push_back(of.based().radius(id));
+             return arrayOf(radii, {py::ssize_t(radii.size())});
+           })
       .def("remove_mesh", [](CastingScene& to, MeshId mesh) { to.edit([&](BasedScene& in) { in.removeMesh(mesh); }); })
       .def("mesh",
            [](const CastingScene& of, MeshId id) {

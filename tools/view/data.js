@@ -85,11 +85,13 @@ export class Answer {
     this.saysOnlyWhether = this.status === "hit" && asked.any_hit === true;
     /** When it touches something; NaN if it is not known. */
     this.time = Number.isFinite(this.t) && !this.saysOnlyWhether && this.status !== "undecided" ? this.t : NaN;
-    this.clearance = Number(asked.clearance ?? 0);
+    const { isRound, radius } = data.sensors.meshOf(query);
+    /** Beyond the surface that is drawn. */
+    this.clearance = Number(asked.clearance ?? 0) + (isRound ? 0 : radius);
     /** Counts only what blocks. */
     this.leaves = asked.ignore_leaving === true;
     /** The distance of the surfaces then; NaN if it is not known. */
-    this.gap = this.clearance > 0 && !this.saysOnlyWhether ? from.gap[i] : 0;
+    this.gap = this.clearance > 0 && !this.saysOnlyWhether ? from.gap[i] - (isRound ? radius : 0) : 0;
     /** Of its bracket; NaN if it says nothing. */
     this.width = this.saysOnlyWhether ? NaN : this.hi - this.lo;
   }

@@ -14,6 +14,7 @@
 #include <tiny_gltf.h>
 
 #include "radar/displacement.h"
+#include "view/round_sensors.h"
 #include "workloads/answer_fields.h"
 #include "workloads/vectors.h"
 
@@ -59,7 +60,11 @@ Vec3 unitOf(Vec3 v) {
 class Writer {
  public:
   Writer(const Workload& workload, std::span<const Result> answers, const LeftOut& left)
-      : workload_(workload), answers_(answers), left_(left), cut_(workload, answers, left, workload.queries.size()) {
+      : workload_(workload),
+        answers_(answers),
+        left_(left),
+        cut_(workload, answers, left, workload.queries.size()),
+        round_(workload, std::span(workload.queries).first(cut_.queries())) {
     model_.asset.version = "2.0";
     model_.asset.generator = "cyber-radar";
     model_.buffers.resize(1);
@@ -134,18 +139,24 @@ class Writer {
     return static_cast<int>(model_.accessors.size()) - 1;
   }
 
+  /// Of the workload, or a round sensor.
+  const MeshData& meshOf(uint32_t number) const {
+    const size_t own = workload_.meshes.size();
+    return number < own ? workload_.meshes[number] : round_.meshes[number - own];
+  }
+
   /// The triangles of a mesh; `turned`: wound the other way round.
   int addIndices(uint32_t number, bool turned) {
     const auto [found, isNew] = indices_.try_emplace({number, turned});
     if (!isNew) return found->second;
-    std::vector<uint32_t> indices = workload_.meshes[number].indices;
+    std::vector<uint32_t> indices = meshOf(number).indices;
     for (size_t i = 0; turned && i < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
     return found->second = addAccessor(indices, TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
   }
 
-  /// A mesh of the workload, as deformed in a scene, and placed if `pose` is given.
+  /// A mesh, as deformed in a scene, and placed if `pose` is given.
   int addMesh(uint32_t scene, uint32_t number, size_t material, const Transform* pose) {
-    const MeshData& mesh = workload_.meshes[number];
+    const MeshData& mesh = meshOf(number);
     const std::vector<float>* positions = &mesh.positions;
     bool isDeformed = false;
     for (const Deformation& deformed : workload_.scenes[scene].deforms) {
@@ -306,10 +317,11 @@ class Writer {
     return base;
   }
 
-  int addMoved(const std::string& name, const QuerySpec& query, size_t material, double share,
-               tinygltf::Animation& animation) {
+  int addMoved(size_t i, size_t material, double share, tinygltf::Animation& animation) {
+    const QuerySpec& query = workload_.queries[i];
+    const std::string name = "sensor " + query.id;
     if (query.chain) return addChain(name, query, material, share, animation);
-    const int body = addPlaced(query.id, query.scene, query.sensor(), material);
+    const int body = addPlaced(query.id, query.scene, round_.sensors[i], material);
     return query.turn ? addTurning(name, body, *query.turn, displacementOf(query), share, animation)
                       : addMoving(name, body, displacementOf(query), share, animation);
   }
@@ -353,7 +365,7 @@ class Writer {
     const auto left = left_.find(static_cast<uint32_t>(i));
     const bool isPart = answer.status == Status::clear && left != left_.end();
     const size_t material = isPart ? model_.materials.size() - 1 : 1 + static_cast<size_t>(answer.status);
-    const int node = addMoved("sensor " + query.id, query, material, shareOf(query, answer), animation);
+    const int node = addMoved(i, material, shareOf(query, answer), animation);
     tinygltf::Value::Object extras{{"status", tinygltf::Value(model_.materials[material].name)}};
     const auto add = [&](const char* name, double value) {
       if (std::isfinite(value)) extras.insert({name, tinygltf::Value(value)});
@@ -375,6 +387,7 @@ class Writer {
   std::span<const Result> answers_;
   const LeftOut& left_;
   Cut cut_;
+  RoundSensors round_;
   tinygltf::Model model_;
   std::map<std::pair<uint32_t, bool>, int> indices_;              // accessors by mesh, and whether it is turned
   std::map<std::pair<uint32_t, uint32_t>, int> positions_;        // accessors by deforming scene + 1, or 0, and mesh

@@ -9,8 +9,11 @@ import { cross, dot, lengthOf, minus, unit } from "./vectors.js";
 
 /** A triangle mesh with the sphere around its box. */
 export class Mesh {
-  /** `isBox`: only the box of a mesh of so many triangles is known. */
-  constructor({ name, positions, indices, triangles = indices.length / 3, isBox = false }) {
+  /**
+   * `isBox`: only the box of a mesh of so many triangles is known. `radius`: of a sensor that is rounded; `isRound`: as a
+   * ball or capsule, which is what is drawn.
+   */
+  constructor({ name, positions, indices, triangles = indices.length / 3, isBox = false, isRound = false, radius = 0 }) {
     this.name = name;
     /** @type {Float32Array} */
     this.positions = positions;
@@ -18,6 +21,8 @@ export class Mesh {
     this.indices = indices;
     this.triangles = triangles;
     this.isBox = isBox;
+    this.isRound = isRound;
+    this.radius = radius;
     this.drawn = indices.length / 3;
     /** @type {?number[][][]} */
     this.creaseLines = null;

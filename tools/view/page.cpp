@@ -9,6 +9,7 @@
 #include "radar/displacement.h"
 #include "view/cut.h"
 #include "view/page_text.h"
+#include "view/round_sensors.h"
 #include "workloads/answer_fields.h"
 #include "workloads/query_fields.h"
 #include "workloads/shapes.h"
@@ -62,11 +63,14 @@ struct Poses {
   Json json() const { return {{"mesh", array(mesh)}, {"linear", array(linear)}, {"at", array(at)}}; }
 };
 
-Json meshJson(const MeshData& mesh, const MeshData* box) {
+/// `isRound`: a sensor that a radius or clearance makes a ball or capsule, as what it is drawn.
+Json meshJson(const MeshData& mesh, const MeshData* box, bool isRound = false) {
   const MeshData& shown = box ? *box : mesh;
   return {{"name", mesh.name},
           {"triangles", mesh.triangleCount()},
           {"isBox", box != nullptr},
+          {"isRound", isRound},
+          {"radius", mesh.radius},
           {"positions", array(shown.positions)},
           {"indices", array(shown.indices)}};
 }
@@ -151,8 +155,10 @@ std::vector<uint32_t> ignoredBy(const QuerySpec& query, const SceneSpec& scene) 
   return ignored;
 }
 
-/// The options that a query gives, but lists of objects: {"clearance": 0.5, "hits": "all", "ignore_leaving": true}.
-Json askedJson(const QuerySpec& query) {
+/// The options that a query gives, but lists of objects: {"clearance": 0.5, "hits": "all", "ignore_leaving": true}. The
+/// clearance is what it asks for beside the radius of its mesh.
+Json askedJson(QuerySpec query, double radius) {
+  query.clearance -= radius;
   Json asked = Json::object();
   for (const QueryField& field : queryFields()) {
     if (field.kind() == 'o' || !isGiven(query, field)) continue;
@@ -169,7 +175,7 @@ Json askedJson(const QuerySpec& query) {
   return asked;
 }
 
-Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
+Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries, const RoundSensors& round) {
   Poses poses;
   Json ignored = Json::object(), asked = Json::object(), turns = Json::object(), moves = Json::object();
   Json ids = Json::array();
@@ -179,7 +185,8 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
   for (const QuerySpec& query : queries) {
     const std::array<double, 3> way = query.chain ? std::array<double, 3>{} : displacementOf(query);
     const std::string number = std::to_string(scenes.size());
-    poses.add(query.mesh, query.worldFromMesh);
+    const Instance& sensor = round.sensors[scenes.size()];
+    poses.add(sensor.mesh, sensor.worldFromMesh);
     if (const std::optional<ChainWay>& way = query.chain) {
       moves[number] = {{"chain", way->chain}, {"from", way->from}, {"to", way->to}, {"base", query.worldFromMesh.m}};
     }
@@ -192,7 +199,7 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
       turns[number] = {{"axis", query.turn->axis}, {"angle", query.turn->angle}, {"centre", query.turn->centre}};
     const std::vector<uint32_t> left = ignoredBy(query, workload.scenes[query.scene]);
     if (!left.empty()) ignored[number] = left;
-    Json options = askedJson(query);
+    Json options = askedJson(query, workload.meshes[query.mesh].radius);
     if (!options.empty()) asked[number] = std::move(options);
   }
   Json json = poses.json();
@@ -288,11 +295,14 @@ std::string pageOf(const Workload& workload, std::span<const Result> answers, co
     if (cut.isBoxed(i)) box = boxOf(mesh);
     json["meshes"].push_back(meshJson(mesh, box ? &*box : nullptr));
   }
+  const std::span<const QuerySpec> queries = std::span(workload.queries).first(count);
+  const RoundSensors round(workload, queries);
+  for (const MeshData& mesh : round.meshes) json["meshes"].push_back(meshJson(mesh, nullptr, true));
   json["chains"] = Json::array();
   for (const ChainSpec& chain : workload.chains) json["chains"].push_back(chainJson(chain));
   json["scenes"] = Json::array();
   for (uint32_t i = 0; i < workload.scenes.size(); ++i) json["scenes"].push_back(sceneJson(workload, i, cut));
-  json["queries"] = queriesJson(workload, std::span(workload.queries).first(count));
+  json["queries"] = queriesJson(workload, queries, round);
   json["answers"] = answersJson(answers.first(count), content.links);
   json["hits"] = hitsJson(content.hits, count, cut.listing());
   json["left"] = byQuery(content.left, count, [](const std::vector<uint32_t>& objects) { return objects; });

@@ -11,7 +11,9 @@ export const inDigits = (value, digits = 6) => {
 
 export function sizeInWords(/** @type {string} */ what, /** @type {import("./meshes.js").Mesh} */ mesh) {
   const sides = mesh.half.map((half) => inDigits(2 * half, 4)).join(" × ");
-  return `${what}: ${mesh.name}, ${mesh.triangles} triangles, ${sides}`;
+  const { name, triangles, isRound, radius } = mesh;
+  const rounding = radius > 0 && !isRound ? `, rounded by ${inDigits(radius, 4)}, which is not drawn` : "";
+  return `${what}: ${name}, ${isRound ? "drawn with " : ""}${triangles} triangles, ${sides}${rounding}`;
 }
 
 function chainInWords(data, { links, bodies }) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +21,8 @@ struct MeshData {
   std::string name;
   std::vector<float> positions;   ///< 3 per vertex
   std::vector<uint32_t> indices;  ///< 3 per triangle
+  /// Of a round sensor (radar/shapes.h); a query's clearance includes that of its mesh. No object has such a mesh.
+  double radius = 0;
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
 };
@@ -83,6 +86,11 @@ struct QuerySpec : Query {
   Instance sensor() const { return {mesh, worldFromMesh}; }
   void setSensor(const Instance& placed) { mesh = placed.mesh, worldFromMesh = placed.worldFromMesh; }
 };
+
+/// The clearance of a query that asks for one beside the radius of its mesh. One that breaks its contract stays wrong.
+inline double withRadius(double clearance, double radius) {
+  return clearance >= 0 && clearance <= std::numeric_limits<double>::max() - radius ? clearance + radius : clearance;
+}
 
 /// Whether its answer's bracket is one of fractions.
 inline bool takesStep(const Query& query) {

@@ -28,6 +28,7 @@ from ._chain import Chain, Link, Moves
 from ._engine import Error
 from ._files import read_mesh
 from ._scene import Objects, Scene
+from ._shapes import Shape, ball, capsule, rounded
 from ._turns import Turns, turn_between
 from ._urdf import load_urdf
 from ._warnings import DeviceLostWarning, MeshFileWarning, RoundingWarning, ValidationWarning
@@ -48,13 +49,17 @@ __all__ = [
     "Overlapping",
     "RoundingWarning",
     "Scene",
+    "Shape",
     "Status",
     "Tier",
     "Turns",
     "ValidationWarning",
+    "ball",
+    "capsule",
     "devices",
     "load_urdf",
     "read_mesh",
+    "rounded",
     "turn_between",
     "versions",
 ]

@@ -226,6 +226,7 @@ class Chain:
             meshes = []
             for entry in link.meshes:
                 mesh, pose = entry if isinstance(entry, (tuple, list)) else (entry, None)
+                self.scene._unrounded(self.scene._known_meshes(mesh), "meshes")
                 meshes.append((self.scene._known_mesh(mesh), _one_pose(pose, "meshes")))
             variable = None if link.joint == "fixed" else self.variables.index(_variable(link))
             origin, (x, y, z) = _one_pose(link.origin, "origin"), axis.tolist()

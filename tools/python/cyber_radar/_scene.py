@@ -31,6 +31,7 @@ from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals
 from ._asked import Asked
 from ._casts import Casts, Hits, Overlapping, record_type, records_of
 from ._files import Path, file_mesh, vertices_at
+from ._shapes import Shape
 from ._turns import turn_arrays
 from ._warnings import DeviceLostWarning, MeshFileWarning, ValidationWarning, warn_of
 
@@ -88,6 +89,7 @@ class Scene:
             threads=one_whole_number(threads, "threads", 0, 4096),
         )
         self._names: dict[int, str] = {}
+        self._shapes: dict[tuple[bytes, bytes, float], int] = {}  # meshes of those that casts were given
         self._lock = threading.Lock()
         self._user: int | None = None  # the thread that holds the lock
         self._is_lost = False  # to a thread of the process that forked this one
@@ -103,12 +105,13 @@ class Scene:
         faces: (M, 3), whole numbers: the vertices of each triangle.
 
         Or only one argument, a mesh of another package: anything with `vertices` and `faces`, as in trimesh, or
-        `triangles`, as in Open3D.
+        `triangles`, as in Open3D. Or a Shape, such as ball(2): casts of the mesh then have the radius.
         """
         numbers, corners = mesh_arrays(vertices, faces)
         floats, base = about_base(numbers, corners)
+        radius = vertices.radius if isinstance(vertices, Shape) else 0.0
         with self._exclusive() as engine:
-            return engine.add_mesh(floats, corners, base)
+            return engine.add_mesh(floats, corners, base, radius)
 
     def load_mesh(self, file: Path, *, scale: float = 1) -> int:
         """Adds the mesh that read_mesh(file, scale=scale) reads and returns its id."""
@@ -142,6 +145,7 @@ class Scene:
             if (engine.objects()[1] == number).any():
                 raise ValueError(f"mesh: expected a mesh that no object uses, got {number}")
             engine.remove_mesh(number)
+            self._shapes = {key: mesh for key, mesh in self._shapes.items() if mesh != number}
 
     def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32] | npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
         """A copy of a mesh: vertices (N, 3), float64 if float32 cannot hold them, and faces (M, 3)."""
@@ -167,7 +171,7 @@ class Scene:
         matrices = np.eye(4) if transforms is None else regular(_poses(transforms, "transforms"), "transforms")
         masks = whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK)
         with self._exclusive() as engine:
-            meshes = self._known_meshes(mesh)
+            meshes = self._unrounded(self._known_meshes(mesh), "mesh")
             shape = common_shape({"mesh": (meshes, 0), "transforms": (matrices, 2), "mask": (masks, 0)})
             ids = engine.add(
                 np.broadcast_to(meshes, shape).ravel(),
@@ -240,7 +244,7 @@ class Scene:
 
     def cast(
         self,
-        mesh: npt.ArrayLike,
+        mesh: npt.ArrayLike | Shape,
         poses: npt.ArrayLike | None,
         displacements: npt.ArrayLike | None = None,
         *,
@@ -263,7 +267,8 @@ class Scene:
     ) -> Casts:
         """How far can a mesh move before its surface first touches an object? Any number of casts at once.
 
-        mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these.
+        mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these. Or a Shape,
+            such as ball(2), which becomes a mesh of the scene, one for all shapes that are equal.
         poses: (..., 4, 4) or (..., 3, 4) world from mesh at the start, affine; None: the identity.
         displacements: (..., 3) the way to go, its end included; world units, at most 2^1000. With a zero the mesh
             rests: only what is there at the start, or moves (set_motions), meets it.
@@ -290,8 +295,8 @@ class Scene:
         ignore_leaving: count only what blocks: the mesh may leave what it rests on, or slide along it.
         slack: with ignore_leaving and skip_overlapping: how far rounding may have let surfaces sink into each other,
             world units; NaN in an array: derived from the coordinates.
-        clearance: surfaces are in contact where their distance is at most this, world units: a ball is a point (a tiny
-            triangle) with a clearance, a capsule a segment.
+        clearance: surfaces are in contact where their distance is at most this, world units; that of a Shape begins at its
+            radius.
         tolerance: with a clearance or turns: how narrow hi - lo is to be, world units; NaN in an array: chosen.
         hits: list the first contacts with this many nearest objects, one each; "all", 0 in an array: all in reach.
 
@@ -311,6 +316,8 @@ class Scene:
             raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
         options["mode"] = mode
         options["resolution"] = one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION)
+        if isinstance(mesh, Shape):
+            mesh = self._mesh_of(mesh)
         excluded = self._excluded(exclude_from_all, exclude_from_each)
         arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
             "mesh": (self._known_meshes(mesh), 0),
@@ -328,6 +335,8 @@ class Scene:
                     raise ValueError(f"{name}: expected none with turns")
             if mode == "sampled":
                 raise ValueError('mode: expected "contact" or "reference" with turns, got "sampled"')
+        if mode == "sampled":
+            self._unrounded(arrays["mesh"][0], 'mesh, in mode "sampled"')
         arrays |= {name: (array, 0) for name, (array, _) in each.items()}
         shape = common_shape(arrays)
         if exclude_from_each is not None:
@@ -376,7 +385,7 @@ class Scene:
         with self._reading() as engine:
             return {
                 "settings": self._settings,
-                "meshes": {mesh: engine.mesh(mesh) for mesh in engine.mesh_ids()},
+                "meshes": {mesh: (*engine.mesh(mesh), float(engine.radii()[mesh])) for mesh in engine.mesh_ids()},
                 "objects": engine.objects(),
                 "names": self._names,
             }
@@ -443,6 +452,22 @@ class Scene:
                 "one id each, pass ids[:, None]; for the same ids in every cast, exclude_from_all"
             )
         return np.concatenate([rows, np.broadcast_to(all_ids, (*rows.shape[:-1], all_ids.size))], axis=-1)
+
+    def _mesh_of(self, shape: Shape) -> int:
+        key = shape.vertices.tobytes(), shape.faces.tobytes(), shape.radius
+        if key not in self._shapes:
+            self._shapes[key] = self.add_mesh(shape)
+        return self._shapes[key]
+
+    def _unrounded(self, meshes: npt.NDArray[np.uint32], name: str) -> npt.NDArray[np.uint32]:
+        """Refuses meshes of Shapes."""
+        with self._reading() as engine:
+            radii = engine.radii()[meshes]
+        if (radii > 0).any():
+            raise ValueError(
+                f"{name}: expected meshes without a radius, got {meshes[radii > 0].flat[0]}, of radius {radii.max():g}"
+            )
+        return meshes
 
     def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:
         ids = whole_numbers(mesh, "mesh", np.uint32, 0, MOST_ID)

@@ -128,7 +128,7 @@ test("a chain's meshes are where its joints take them", () => {
   const move = { chain: 0, from: [0, 1], to: [Math.PI, 3], base: [1, 0, 0, 100, 0, 1, 0, 0, 0, 0, 1, 0] };
   const hit = { ...HIT, object: NONE, t: 0.5, lo: 0.5, hi: 0.6, step: true, move, link: 2, mesh: 1, other_link: 1, other_mesh: 0 };
   const data = dataOf([hit, { ...HIT, t: 0.5, step: true, move, link: 1, mesh: 0 }, { ...CLEAR, step: true, move },
-    { ...CLEAR, step: true, move: { ...move, chain: 1 } }], [{ links }, { links: links.slice(0, 1) }]);
+    { ...CLEAR, step: true, move: { ...move, chain: 1 } }], { chains: [{ links }, { links: links.slice(0, 1) }] });
   const rounded = (v) => v.map((x) => Number(x.toFixed(9)) + 0);
   const centres = (share) => data.bodiesAt(0, share).map(({ placed, i }) => rounded(placed.centreOf(i)));
   assert.deepEqual(centres(0), [[100, 1, 8], [100, 1, 8], [100, 1, 12]]);

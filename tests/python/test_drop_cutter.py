@@ -9,125 +9,97 @@ import cyber_radar
 from conftest import page_data
 from test_examples import run
 
-import cutters  # noqa: E402  (test_examples makes the examples importable)
-import drop_cutter  # noqa: E402
-from cutters import Cutter  # noqa: E402
+import drop_cutter  # noqa: E402  (test_examples makes the examples importable)
+from cutters import Cutter, Tool, exact_heights  # noqa: E402
 
 BALL, FLAT = Cutter(3, 50, corner=3), Cutter(3, 50)
 BULL, CONE = Cutter(3, 50, corner=1), Cutter(3, 50, slope=1.5)
 
 
-def exact_heights(cutter: Cutter, corners: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The tip's height at each point (n, 2): the highest of q_z - height(|q - point|) over all points q of the
-    triangles (m, 3, 3). That is at a vertex, at the steepest touch of a facet, or on an edge, where it is concave."""
-    edges = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 3)
-    highest = [_over(cutter, corners.reshape(-1, 3), points).max(axis=1)]
-    highest.append(_on_facets(cutter, corners, points).max(axis=1))
-    highest.append(_on_edges(cutter, edges, points).max(axis=1))
-    return np.max(highest, axis=0)
-
-
-def _over(cutter: Cutter, q: np.ndarray, points: np.ndarray) -> np.ndarray:
-    distance = np.linalg.norm(q[..., :2] - points[:, None], axis=-1)
-    return q[..., 2] - cutter.height(distance)
-
-
-def _on_facets(cutter: Cutter, corners: np.ndarray, points: np.ndarray) -> np.ndarray:
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    corners, normals = corners[normals[:, 2] != 0], normals[normals[:, 2] != 0]
-    gradient = -normals[:, :2] / normals[:, 2:]
-    slope = np.linalg.norm(gradient, axis=1)
-    uphill = gradient / np.maximum(slope, 1e-300)[:, None]
-    to = points[:, None] + uphill * cutter.steepest(slope)[:, None]
-    inside = np.ones(to.shape[:2], bool)
-    for i in range(3):
-        a, b = corners[:, i, :2], corners[:, (i + 1) % 3, :2]
-        side = (b - a)[:, 0] * (to - a)[..., 1] - (b - a)[:, 1] * (to - a)[..., 0]
-        inside &= side * np.sign(normals[:, 2]) >= 0
-    z = corners[:, 0, 2] + ((to - corners[:, 0, :2]) * gradient).sum(axis=-1)
-    return np.where(inside, z - cutter.height(cutter.steepest(slope)), -np.inf)
-
-
-def _on_edges(cutter: Cutter, edges: np.ndarray, points: np.ndarray) -> np.ndarray:
-    start, along = edges[:, 0], edges[:, 1] - edges[:, 0]
-    # Where the edge is below the cutter: |start + s along - point| <= radius.
-    away = start[:, :2] - points[:, None]
-    a = (along[:, :2] ** 2).sum(axis=-1) + 1e-300
-    b, c = (away * along[:, :2]).sum(axis=-1), (away**2).sum(axis=-1) - cutter.radius**2
-    root = np.sqrt(np.maximum(b * b - a * c, 0))
-    low, high = np.clip((-b - root) / a, 0, 1), np.clip((-b + root) / a, 0, 1)
-
-    def value(s):
-        q = start + s[..., None] * along
-        distance = np.minimum(np.linalg.norm(q[..., :2] - points[:, None], axis=-1), cutter.radius)
-        return q[..., 2] - cutter.height(distance)
-
-    seen = (b * b > a * c) & (low < high)
-    for _ in range(100):
-        one, two = low + (high - low) / 3, high - (high - low) / 3
-        rises = value(one) < value(two)
-        low, high = np.where(rises, one, low), np.where(rises, high, two)
-    return np.where(seen, value((low + high) / 2), -np.inf)
-
-
 @pytest.mark.parametrize("cutter", [BALL, FLAT, BULL, CONE])
-def test_the_exact_height_lies_between_those_of_the_two_meshes(cutter):
+def test_the_exact_height_lies_between_those_of_the_two_polygons(cutter):
     rng = np.random.default_rng(14)
     turned = drop_cutter.cube(side=9.0)
     peak = np.float32([[20, 0, 0], [24, 0, 0], [20, 4, 0], [21, 1, 6]]), np.array(
         [[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]]
     )
+    kinds: set[int] = set()
     for vertices, faces in (turned, peak, drop_cutter.relief(cells=8, side=30.0)):
-        scene = cyber_radar.Scene()
-        scene.add(scene.add_mesh(vertices, faces))
-        corners = vertices.astype(float)[faces]
+        machine, corners = drop_cutter.Machine((vertices, faces), 1.0, "reference"), vertices.astype(float)[faces]
         low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         points = rng.uniform(low[:2] - 2, high[:2] + 2, (300, 2))
-        poses = np.zeros((300, 4, 4)) + np.eye(4)
-        poses[:, :2, 3], poses[:, 2, 3] = points, high[2] + 1
-        expected = exact_heights(cutter, corners, points)
+        expected = np.maximum(exact_heights(cutter, corners, points), low[2])
         bracket = []
-        for tool in (cutter.inscribed(48, 12), cutter.circumscribed(48, 12)):
-            casts = scene.cast(scene.add_mesh(*tool), poses, [0, 0, -200], mode="reference")
-            bracket.append(high[2] + 1 - casts.t)
+        for tool in (cutter.tool(48, outside=False), cutter.tool(48)):
+            casts, heights = machine.falls(tool, points, "reference")
+            bracket.append(heights)
         assert (bracket[0] <= expected + 1e-9).all() and (expected <= bracket[1] + 1e-9).all()
-        touched = np.isfinite(expected)
+        touched = casts.touches & (expected > low[2])
         assert 100 < touched.sum()
         # Between vertical walls a small error of the shape may be a large one of the height, but seldom is.
-        error = cutter.tessellation_error(48, 12)
-        assert np.median(bracket[1][touched] - bracket[0][touched]) < 8 * error
+        width = (bracket[1] - bracket[0])[touched]
+        assert np.median(width) <= 8 * cutter.polygon_error(48)
+        if cutter is BALL:
+            assert np.quantile(np.abs(bracket[1] - expected)[touched], 0.95) < 1e-9
+        # What is touched lies on the cutter, in the part's triangles of that many corners.
+        up = (casts.point[..., 2] - heights)[touched]
+        away = np.linalg.norm(casts.point[..., :2] - points, axis=-1)[touched]
+        if cutter is BALL:
+            np.testing.assert_allclose(np.hypot(away, up - 3), 3, atol=1e-6)
+        is_vertex = touched & (casts.feature_b == cyber_radar.Feature.VERTEX)
+        assert (np.abs(casts.point[is_vertex][:, None] - vertices).max(axis=-1).min(axis=-1) == 0).all()
+        kinds |= set(casts.feature_b[touched].tolist())
+    assert len(kinds) > 1
 
 
-@pytest.mark.parametrize("cutter", [BALL, FLAT, BULL, CONE])
-def test_the_meshes_of_a_cutter_are_closed_and_inside_and_around_it(cutter):
-    for mesh, sign in ((cutter.inscribed(20, 6), 1), (cutter.circumscribed(20, 6), -1)):
-        vertices, faces = mesh[0].astype(float), mesh[1]
-        edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-        assert {tuple(edge) for edge in edges.tolist()} == {tuple(edge) for edge in edges[:, ::-1].tolist()}
-        a, b, c = vertices[faces].transpose(1, 0, 2)
-        assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0  # wound outwards
-        # Points of the lower faces: above the cutter's surface if the mesh is inside.
-        middle = np.concatenate([vertices[faces].mean(axis=1), vertices, (a + b) / 2])
-        middle = middle[middle[:, 2] < cutter.length * 0.9]
-        distance = np.linalg.norm(middle[:, :2], axis=1)
-        with np.errstate(invalid="ignore"):
-            depth = sign * (middle[:, 2] - cutter.height(distance))
-        inside = distance <= cutter.radius if sign > 0 else distance < cutter.radius
-        assert (depth[inside] >= -1e-12).all()
-        assert sign < 0 or inside.all()
+@pytest.mark.parametrize("cutter", [FLAT, BULL, CONE])
+def test_the_polygons_of_a_cutter_are_closed_and_inside_and_around_it(cutter):
+    core = Cutter(cutter.radius - cutter.corner, cutter.length - 2 * cutter.corner, slope=cutter.slope)
+    for outside, sign in ((False, 1), (True, -1)):
+        tool = cutter.tool(20, outside)
+        assert tool.above == tool.shape.radius == cutter.corner
+        check_surface(tool, core, sign)
+
+
+def test_the_facets_of_a_ball_are_closed_and_around_it():
+    check_surface(BALL.facets(20, 6), BALL, -1)
+
+
+def check_surface(tool: Tool, cutter: Cutter, sign: int) -> None:
+    """Closed, wound outwards, and inside the cutter (sign 1) or around it."""
+    vertices, faces = tool.shape.vertices, tool.shape.faces
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    assert {tuple(edge) for edge in edges.tolist()} == {tuple(edge) for edge in edges[:, ::-1].tolist()}
+    a, b, c = vertices[faces].transpose(1, 0, 2)
+    assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
+    # Points of the lower faces: above the cutter's surface if the mesh is inside.
+    middle = np.concatenate([vertices[faces].mean(axis=1), vertices, (a + b) / 2])
+    middle = middle[middle[:, 2] < cutter.length * 0.9]
+    distance = np.linalg.norm(middle[:, :2], axis=1)
+    with np.errstate(invalid="ignore"):
+        depth = sign * (middle[:, 2] - cutter.height(distance))
+    inside = distance <= cutter.radius if sign > 0 else distance < cutter.radius
+    assert (depth[inside] >= -1e-12).all()
+    assert sign < 0 or inside.all()
 
 
 def test_a_relief_is_machined(tmp_path):
     (tmp_path / "part.obj").write_text(_obj(*drop_cutter.relief(cells=10, side=20.0)))
     text = run(
         "drop_cutter.py", tmp_path / "part.obj", "--out", tmp_path, "--step", 1, "--diameter", 4, "--segments", 24,
-        "--arc-steps", 6, "--holder", 8, 6, "--mode", "reference",
+        "--cutter", "bull", "--corner", 0.5, "--holder", 8, 6, "--waterline", 3, "--mode", "reference",
     )  # fmt: skip
     heights, lowest = np.load(tmp_path / "heights.npy"), np.load(tmp_path / "lowest.npy")
     assert heights.shape == (21, 21) and (lowest <= heights).all()
     report = json.loads((tmp_path / "report.json").read_text())
     assert report["points"] == 441 and report["triangles"] == 200 and "points: 441" in text
     assert report["widest_bracket_um"] == pytest.approx(1e3 * (heights - lowest).max())
+
+    touched = np.load(tmp_path / "touched.npy")
+    kinds = [(touched[..., 3] == kind).sum() for kind in (1, 2, 3)]
+    assert kinds == [report[f"{name}_touched"] for name in ("vertices", "edges", "facets")] and sum(kinds) == 441
+    stops = np.loadtxt(tmp_path / "waterline.csv", delimiter=",", skiprows=1, ndmin=2)
+    assert len(stops) == report["waterline_stops"] > 20 and (stops[:, 2] == 3).all()
 
     table = np.loadtxt(tmp_path / "holder.csv", delimiter=",", skiprows=1, ndmin=2)
     assert len(table) == report["holder_touches_first"] > 0
@@ -155,7 +127,7 @@ def path_in(folder) -> np.ndarray:
 @pytest.mark.parametrize("cutter", [BALL, FLAT, BULL, CONE])
 def test_a_round_cutter_cuts_too_deep_at_no_point_of_its_path_and_neither_does_its_holder(cutter):
     vertices, faces = drop_cutter.relief(cells=7, side=12.0)
-    machine, tool = drop_cutter.Machine((vertices, faces), 1.0, "reference"), cutter.circumscribed(48, 12)
+    machine, tool = drop_cutter.Machine((vertices, faces), 1.0, "reference"), cutter.tool(48)
     heights, _, _ = machine.drop(tool)
     path, work = machine.path(tool, heights, 0.01)
     assert work["moves_too_deep"] > 50 and work["points_inserted"] == len(path) - heights.size > 50
@@ -166,17 +138,17 @@ def test_a_round_cutter_cuts_too_deep_at_no_point_of_its_path_and_neither_does_i
     above = between[:, 2] - exact_heights(cutter, corners, between[:, :2])
     assert (above >= 0).all() and np.median(above) < 0.1
 
-    held, longer = machine.hold(drop_cutter.cylinder(8, 5, 30, 24), path, 0.01)
-    assert (held > path[:, 2]).any() and 0 < longer - (held - path[:, 2]).max() < 0.1
+    held, longer = machine.hold(Tool(Cutter(8, 25).tool(24).shape, 5), path, 0.01)
+    assert (held > path[:, 2]).any() and 0 <= longer - (held - path[:, 2]).max() < 0.1
     between = between[:60]
     assert (between[:, 2] + longer + 5 >= exact_heights(Cutter(8, 50), corners, between[:, :2])).all()
-    assert machine.hold(drop_cutter.cylinder(8, 40, 60, 24), path, 0.01)[1] == 0
+    assert machine.hold(Tool(Cutter(8, 20).tool(24).shape, 40), path, 0.01)[1] == 0
 
 
 def test_the_surface_left_is_the_lowest_envelope_and_never_below_the_part():
     part = drop_cutter.relief(cells=10, side=20.0)
     machine = drop_cutter.Machine(part, 1.0, "reference")
-    heights, _, _ = machine.drop(BALL.circumscribed(48, 12))
+    heights, _, _ = machine.drop(BALL.tool(48))
     left = drop_cutter.surface_left(heights, 1.0, BALL, 99.0)
     x, y = np.meshgrid(machine.raster.x, machine.raster.y)
     points = np.stack([x, y], axis=-1).reshape(-1, 2)
@@ -187,8 +159,9 @@ def test_the_surface_left_is_the_lowest_envelope_and_never_below_the_part():
 
 
 def test_any_mesh_may_be_the_cutter_and_depth_pictures_are_compared(tmp_path):
-    (tmp_path / "mill.obj").write_text(_obj(*cutters.cylinder(2.0, 0.0, 9.0, 4)))
-    (tmp_path / "holder.obj").write_text(_obj(*cutters.cylinder(20.0, 9.0, 30.0, 8)))
+    for name, cutter, segments, above in (("mill", Cutter(2, 9), 4, 0), ("holder", Cutter(20, 21), 8, 9)):
+        shape = cutter.tool(segments).shape
+        (tmp_path / f"{name}.obj").write_text(_obj(shape.vertices + [0, 0, above], shape.faces))
     text = run(
         "drop_cutter.py", "cube", "--cutter", tmp_path / "mill.obj", "--step", 50, "--compare", "--out", tmp_path,
         "--holder", tmp_path / "holder.obj",
@@ -206,7 +179,7 @@ def test_any_mesh_may_be_the_cutter_and_depth_pictures_are_compared(tmp_path):
 def test_the_turned_cube_has_no_holes():
     vertices, faces = drop_cutter.cube()
     machine = drop_cutter.Machine((vertices, faces), 6.9, "reference")  # no place a radius beyond the rim
-    heights, _, _ = machine.drop(BALL.circumscribed(64, 16))
+    heights, _, _ = machine.drop(BALL.tool(64))
     points = np.stack(np.meshgrid(machine.raster.x, machine.raster.y), axis=-1).reshape(-1, 2)
     expected = exact_heights(BALL, vertices.astype(float)[faces], points)
     over = np.isfinite(expected)

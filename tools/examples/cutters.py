@@ -1,4 +1,4 @@
-"""Milling cutters: surfaces of revolution around the z axis with the tip at z = 0, and meshes that bracket them."""
+"""Milling cutters around the z axis, as shapes, and their heights above a part in closed form."""
 
 from __future__ import annotations
 
@@ -6,9 +6,19 @@ import dataclasses
 
 import numpy as np
 
+from cyber_radar import Shape, capsule, rounded
+
 Mesh = tuple[np.ndarray, np.ndarray]  # vertices (n, 3) float32, faces (m, 3)
 
 _ROUNDING = 2.0**-22  # moves vertices inwards or outwards by more than rounding them to float32 may
+
+
+@dataclasses.dataclass(frozen=True)
+class Tool:
+    """A shape whose origin is so much higher than the tip: that is left to poses, since floats would round it."""
+
+    shape: Shape
+    above: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -37,46 +47,90 @@ class Cutter:
         touched = self.radius - self.corner + self.corner * slope / np.sqrt(1 + slope**2)
         return np.where(slope > 0, touched, 0.0)
 
-    def inscribed(self, segments: int, steps: int) -> Mesh:
-        """A mesh inside the cutter: it touches no earlier, so it falls no less deep."""
-        turn = np.linspace(0, np.pi / 2, steps + 1) if self.corner > 0 else np.zeros(1)
-        profile = self._profile(turn, np.ones_like(turn))
-        return _revolved(profile, segments, 1 - _ROUNDING)
+    def tool(self, segments: int, outside: bool = True) -> Tool:
+        """A ball cutter, exactly: a capsule. Another: a polygon of so many corners around the axis, outside or inside the
+        circle, rounded by the arc of the corner."""
+        length = self.length - 2 * self.corner
+        if self.corner == self.radius:
+            return Tool(capsule([0, 0, 0], [0, 0, length], self.radius), self.corner)
+        core, widened = self.radius - self.corner, _outside(segments) if outside else 1 - _ROUNDING
+        profile = np.array([[core, self.slope * core], [core, length]])
+        return Tool(rounded(_revolved(profile, segments, widened), self.corner), self.corner)
 
-    def circumscribed(self, segments: int, steps: int) -> Mesh:
-        """A mesh around the cutter."""
+    def polygon_error(self, segments: int) -> float:
+        """No point of the cutter is farther than this from either shape, and no point of theirs from it."""
+        return (self.radius - self.corner) * (_outside(segments) - 1)
+
+    def facets(self, segments: int, steps: int) -> Tool:
+        """A mesh around the cutter, whose arc is made of `steps` facets, too."""
         step = np.pi / 2 / steps
-        if self.corner > 0:
-            turn = np.concatenate([[0], (np.arange(steps) + 0.5) * step, [np.pi / 2]])
-            away = np.concatenate([[1], np.full(steps, 1 / np.cos(step / 2)), [1]])
-        else:
-            turn, away = np.zeros(1), np.ones(1)
-        return _revolved(self._profile(turn, away), segments, (1 + _ROUNDING) / np.cos(np.pi / segments))
-
-    def tessellation_error(self, segments: int, steps: int) -> float:
-        """No point of the cutter is farther than this from either mesh, and no point of theirs from it."""
-        around, along = 1 / np.cos(np.pi / segments) - 1, 1 / np.cos(np.pi / 4 / steps) - 1
-        return self.radius * around + self.corner * along
-
-    def _profile(self, turn: np.ndarray, away: np.ndarray) -> np.ndarray:
-        """Distances from the axis and heights, from the tip to the end of the shaft."""
-        if self.slope > 0:
-            points = [[self.radius, self.slope * self.radius]]
-        else:
-            across = self.radius - self.corner + self.corner * away * np.sin(turn)
-            points = np.stack([across, self.corner * (1 - away * np.cos(turn))], axis=1).tolist()
-        points = [point for point in points if point[0] > 0]
-        return np.array([*points, [self.radius, self.length]])
+        turn = np.concatenate([[0], (np.arange(steps) + 0.5) * step, [np.pi / 2]])
+        away = self.corner * np.concatenate([[1], np.full(steps, 1 / np.cos(step / 2)), [1]])
+        profile = np.stack([self.radius - self.corner + away * np.sin(turn), self.corner - away * np.cos(turn)], axis=1)
+        profile = np.array([*profile[profile[:, 0] > 0], [self.radius, self.length]])
+        return Tool(rounded(_revolved(profile, segments, _outside(segments)), 0))
 
 
-def cylinder(radius: float, low: float, high: float, segments: int) -> Mesh:
-    """A holder: a cylinder around the z axis."""
-    vertices, faces = _revolved(np.array([[radius, 0], [radius, high - low]]), segments, 1 / np.cos(np.pi / segments))
-    return vertices + np.float32([0, 0, low]), faces
+def exact_heights(cutter: Cutter, corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """The tip's height at each point (n, 2): the highest of q_z - height(|q - point|) over all points q of the
+    triangles (m, 3, 3). That is at a vertex, at the steepest touch of a facet, or on an edge, where it is concave."""
+    edges = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 3)
+    highest = [_over(cutter, corners.reshape(-1, 3), points).max(axis=1)]
+    highest.append(_on_facets(cutter, corners, points).max(axis=1))
+    highest.append(_on_edges(cutter, edges, points).max(axis=1))
+    return np.max(highest, axis=0)
+
+
+def _over(cutter: Cutter, q: np.ndarray, points: np.ndarray) -> np.ndarray:
+    distance = np.linalg.norm(q[..., :2] - points[:, None], axis=-1)
+    return q[..., 2] - cutter.height(distance)
+
+
+def _on_facets(cutter: Cutter, corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    corners, normals = corners[normals[:, 2] != 0], normals[normals[:, 2] != 0]
+    gradient = -normals[:, :2] / normals[:, 2:]
+    slope = np.linalg.norm(gradient, axis=1)
+    uphill = gradient / np.maximum(slope, 1e-300)[:, None]
+    to = points[:, None] + uphill * cutter.steepest(slope)[:, None]
+    inside = np.ones(to.shape[:2], bool)
+    for i in range(3):
+        a, b = corners[:, i, :2], corners[:, (i + 1) % 3, :2]
+        side = (b - a)[:, 0] * (to - a)[..., 1] - (b - a)[:, 1] * (to - a)[..., 0]
+        inside &= side * np.sign(normals[:, 2]) >= 0
+    z = corners[:, 0, 2] + ((to - corners[:, 0, :2]) * gradient).sum(axis=-1)
+    return np.where(inside, z - cutter.height(cutter.steepest(slope)), -np.inf)
+
+
+def _on_edges(cutter: Cutter, edges: np.ndarray, points: np.ndarray) -> np.ndarray:
+    start, along = edges[:, 0], edges[:, 1] - edges[:, 0]
+    # Where the edge is below the cutter: |start + s along - point| <= radius.
+    away = start[:, :2] - points[:, None]
+    a = (along[:, :2] ** 2).sum(axis=-1) + 1e-300
+    b, c = (away * along[:, :2]).sum(axis=-1), (away**2).sum(axis=-1) - cutter.radius**2
+    root = np.sqrt(np.maximum(b * b - a * c, 0))
+    low, high = np.clip((-b - root) / a, 0, 1), np.clip((-b + root) / a, 0, 1)
+
+    def value(s):
+        q = start + s[..., None] * along
+        distance = np.minimum(np.linalg.norm(q[..., :2] - points[:, None], axis=-1), cutter.radius)
+        return q[..., 2] - cutter.height(distance)
+
+    seen = (b * b > a * c) & (low < high)
+    for _ in range(100):
+        one, two = low + (high - low) / 3, high - (high - low) / 3
+        rises = value(one) < value(two)
+        low, high = np.where(rises, one, low), np.where(rises, high, two)
+    return np.where(seen, value((low + high) / 2), -np.inf)
+
+
+def _outside(segments: int) -> float:
+    """By how much a polygon is larger than the circle in it."""
+    return (1 + _ROUNDING) / np.cos(np.pi / segments)
 
 
 def _revolved(profile: np.ndarray, segments: int, widened: float) -> Mesh:
-    """Closed, wound outwards: rings of `segments` corners, the tip in the middle of the first."""
+    """Closed, wound outwards: rings of `segments` corners, the tip, at 0, in the middle of the first."""
     angles = np.arange(segments) * (2 * np.pi / segments)
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     rings = [np.column_stack([circle * (r * widened), np.full(segments, z)]) for r, z in profile]

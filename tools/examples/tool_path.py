@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 import cyber_radar
+from cutters import Tool
 
 DIGITS = 4  # that are written behind the point
 Touches = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -28,9 +29,10 @@ def poses_at(points: np.ndarray) -> np.ndarray:
     return poses
 
 
-def touches(scene: cyber_radar.Scene, mesh: int, points: np.ndarray, ends: np.ndarray, mode: str) -> np.ndarray:
-    """Whether a mesh meets the part anywhere on its straight ways from points (n, 3) to ends (n, 3)."""
-    return scene.cast(mesh, poses_at(points), ends - points, any_hit=True, mode=mode).touches
+def touches(scene: cyber_radar.Scene, tool: Tool, points: np.ndarray, ends: np.ndarray, mode: str) -> np.ndarray:
+    """Whether a tool may meet the part anywhere on the straight ways of its tip from points (n, 3) to ends (n, 3)."""
+    poses = poses_at(points + [0, 0, tool.above])
+    return scene.cast(tool.shape, poses, ends - points, any_hit=True, mode=mode).status != cyber_radar.Status.CLEAR
 
 
 def length(points: np.ndarray) -> float:

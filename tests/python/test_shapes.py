@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import FACES, at, box, page_data, same_answers
+from conftest import FACES, at, box, page_data, random_poses, same_answers
 from cyber_radar import Feature, Status, ball, capsule, rounded
 from test_arguments import refusal
 
@@ -102,3 +102,17 @@ def test_a_page_draws_balls_and_capsules_and_names_the_clearance_beside_the_radi
     shown = page_data(casts.show(tmp_path / "rod.html"))
     assert [mesh["radius"] for mesh in shown["meshes"] if mesh["isRound"]] == [1, 1]  # of two lengths
     assert shown["queries"]["asked"]["0"]["clearance"] == 0.5
+
+
+def test_a_device_gives_the_answers_of_the_cpu():
+    rng = np.random.default_rng(5)
+    device = cyber_radar.Scene(cpu_batch=0)
+    cube = device.add_mesh(box(1, 1, 1), FACES)
+    device.add(cube, random_poses(rng, 60, 8))
+    shapes = [ball(0.3), capsule([0, 0, -1], [0, 0.5, 1], 0.2), rounded(device.mesh(cube), 0.25)]
+    meshes = np.array([device.add_mesh(shape) for shape in shapes])
+    poses, ways = random_poses(rng, 300, 12), rng.normal(size=(300, 3)) * 6
+    options = {"clearance": rng.choice([0, 0.1], 300), "hits": "all"}
+    casts = [device.cast(meshes[:, None], poses, ways, mode=mode, **options) for mode in ("contact", "reference")]
+    assert same_answers(*casts, but=("tier",)) and same_answers(casts[0].hits, casts[1].hits, but=("tier",))
+    assert 100 < casts[0].touches.sum() < 800

@@ -83,7 +83,9 @@ class Machine:
         starts = np.concatenate([points, np.full_like(points[..., :1], self.raster.top)], axis=-1)
         casts = self.goes(tool, starts, [0, 0, self.raster.floor - self.raster.top], mode, resolution)
         heights = np.where(casts.status == Status.CLEAR, self.raster.floor, self.raster.top - casts.lo)
-        return casts, heights if mode != "sampled" else np.where(casts.touches, self.raster.top - casts.t, self.raster.floor)
+        if mode == "sampled":
+            heights = np.where(casts.touches, self.raster.top - casts.t, self.raster.floor)
+        return casts, heights
 
     def goes(
         self, tool: Tool, starts: np.ndarray, way: np.ndarray, mode: str, resolution: int = 0

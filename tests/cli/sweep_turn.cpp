@@ -1,4 +1,4 @@
-// sweep with a sensor that turns.
+// sweep with a sensor that turns, or is a ball.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -108,4 +108,24 @@ TEST_CASE("sweep refuses what is no turn, and what does not go with one, by the 
     checkRefused(folder, std::string("sweep post.obj rod.obj ") + options, words);
   }
   checkRefused(folder, "scopes post.obj rod.obj --turn 0 0 1 1 --out p", "--turn");
+}
+
+TEST_CASE("sweep moves a ball, and refuses one without a radius") {
+  const ScratchFolder folder;
+  writeGate(folder);
+  const std::string down = " --mode reference --at 0 0 5 --direction 0 0 -1 --distance 9 ";
+  const Run run = runProgram(folder, "sweep rod.obj ball:1.5" + down + "--json --view v.html");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  const auto answer = nlohmann::json::parse(run.out);
+  CHECK(std::abs(answer["t"].get<double>() - 3.5) < 2e-6);
+  CHECK(pageData(folder.read("v.html"))["meshes"].back()["isRound"] == true);
+  const Run farther = runProgram(folder, "sweep rod.obj ball:1.5 --clearance 0.5 --json" + down);
+  CHECK(std::abs(nlohmann::json::parse(farther.out)["t"].get<double>() - 3) < 2e-6);
+  for (const char* radius : {"", "-1", "nan", "1e400", "2x"}) {
+    checkRefused(folder, std::string("sweep rod.obj ball:") + radius + down,
+                 std::string("SENSOR: ball:") + radius + ": expected a radius from 0 to 2^1000");
+  }
+  checkRefused(folder, "scopes rod.obj ball:2 --at 0 0 5 --direction 0 0 -1 --distance 9 --out p",
+               "ball:2: expected a sensor without a radius");
 }

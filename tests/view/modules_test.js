@@ -64,6 +64,7 @@ test("a ball touches, and keeps its clearance, beyond its radius; a rounded mesh
   const ball = { isRound: true, radius: 2, name: "ball" };
   const touching = wordsOf(ball, { ...HIT, gap: 2 });
   assert.equal(touching[0], "Free for 3, then it touches object 0 (ball).");
+  assert.ok(touching.includes("It meets the object's triangle 1 (yellow)."));
   assert.ok(touching.includes("Sensor: ball, drawn with 2 triangles, 2 × 2 × 2"), touching.join("\n"));
   assert.equal(wordsOf(ball, near)[0], "Comes within 0.5 of object 0 (ball) after 3.");
   assert.ok(wordsOf(ball, near).includes("The gap is then 0.5 long (drawn)."));

@@ -8,6 +8,7 @@
 #include "batch/query_file.h"
 #include "import/mesh_import.h"
 #include "radar/displacement.h"
+#include "radar/shapes.h"
 #include "workloads/query_fields.h"
 
 namespace radar::tools {
@@ -73,6 +74,20 @@ Assembly nodesOf(const std::string& name, std::vector<std::string>& warnings, do
     if (nodes.parts.size() == 1) nodes.meshes[0].name = std::filesystem::path(name).filename().string();
   }
   return nodes;
+}
+
+/// "ball:2" is a ball of that radius, else a mesh file is meant.
+FileMesh sensorFrom(const std::string& name, std::vector<std::string>& warnings, double scale) {
+  constexpr std::string_view kBall = "ball:";
+  if (!name.starts_with(kBall)) return readMesh(name, warnings, scale);
+  double radius = 0;
+  const char *const begin = name.data() + kBall.size(), *const end = name.data() + name.size();
+  const auto [rest, error] = std::from_chars(begin, end, radius);
+  if (error != std::errc() || rest != end || !(radius >= 0 && radius <= 0x1p1000)) {
+    throw InputError("SENSOR", name, "expected a radius from 0 to 2^1000 behind \"ball:\"");
+  }
+  const RoundShape shape = ball(radius);
+  return {{name, shape.positions, shape.indices, shape.radius}, {}};
 }
 
 }  // namespace
@@ -278,7 +293,7 @@ Workload SweepOptions::load() const {
   std::vector<std::string> warnings;
   Workload workload;
   const Assembly nodes = nodesOf(scene, warnings, scale.value_or(1));
-  const FileMesh moving = readMesh(sensor, warnings, sensorScale ? *sensorScale : scale.value_or(1));
+  const FileMesh moving = sensorFrom(sensor, warnings, sensorScale ? *sensorScale : scale.value_or(1));
   workload.meshes.assign(nodes.meshes.begin(), nodes.meshes.end());
   workload.meshes.push_back(moving);
   SceneSpec& objects = workload.scenes.emplace_back();
@@ -289,6 +304,7 @@ Workload SweepOptions::load() const {
   }
   for (const std::string& node : exclude) query.exclude.push_back(nodes.numberOf(scene, node));
   query.setSensor({static_cast<uint32_t>(nodes.meshes.size()), aboutBase(poseFrom(at, rotate), moving.base)});
+  query.clearance = withRadius(query.clearance, moving.radius);
   workload.queries.push_back(query);
   printWarnings(warnings);
   return workload;

@@ -97,6 +97,9 @@ void drawScopes(Options& options) {
     throw InputError(options.files[0], name,
                      std::string("expected a straight motion, along which scopes look, got a ") + name);
   }
+  if (const MeshData& sensor = workload.meshes[wanted.mesh]; sensor.radius > 0) {
+    throw InputError(sensor.name, "", "expected a sensor without a radius, of which scopes are pictures");
+  }
   workload.queries = {sampledPartOf(wanted)};
   workload.queries.front().anyHit = false;
   const QuerySpec& query = workload.queries.front();

@@ -23,7 +23,8 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --view sweep.html
 
 SCENE and SENSOR are OBJ, STL, PLY, OFF, 3MF or glTF 2 files, or what assimp reads besides, in one common unit after
---scale and --sensor-scale; FILE#3 or FILE#NAME is one node of a file, in its own frame. The scene stands as it is, each of
+--scale and --sensor-scale; FILE#3 or FILE#NAME is one node of a file, in its own frame. As SENSOR, ball:2 is a ball of
+radius 2; a mesh is rounded by --clearance. The scene stands as it is, each of
 its nodes an object (cyber-radar info lists them); the sensor, one mesh, is turned (--rotate), put in its place (--at) and
 moved along --direction for --distance. With --turn it turns meanwhile, or on the spot.)";
 
@@ -92,7 +93,7 @@ void addSweepCommand(Program& program) {
   Command command = program.add("sweep", "Moves one mesh through another and says what it hits, and where", kExamples);
   auto options = std::make_shared<Options>();
   command.option("SCENE", &options->sweep.scene, "Mesh file of what stands still").required();
-  command.option("SENSOR", &options->sweep.sensor, "Mesh file of what moves").required();
+  command.option("SENSOR", &options->sweep.sensor, "Mesh file of what moves, or ball:RADIUS").required();
   options->sweep.addMotionTo(command);
   options->sweep.addTurnTo(command);
   options->sweep.addFieldsTo(command);

@@ -106,7 +106,8 @@ export function inWords(/** @type {Answer} */ answer) {
   }
   const link = data.linkName(query, answer.body), other = data.linkName(query, answer.otherBody);
   if (triA !== data.none) {
-    const own = link ? `triangle ${triA} of its link ${link}` : `its triangle ${triA}`;
+    const isRound = !link && data.sensors.meshOf(query).isRound;
+    const own = isRound ? "it" : link ? `triangle ${triA} of its link ${link}` : `its triangle ${triA}`;
     const touched = other ? `triangle ${triB} of its link ${other}` : `the object's triangle ${triB}`;
     lines.push(hasGap ? `The nearest points lie on ${own} and on ${touched} (yellow).`
       : `${own[0].toUpperCase()}${own.slice(1)} meets ${touched} (yellow).`);

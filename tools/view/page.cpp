@@ -199,7 +199,7 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries, c
       turns[number] = {{"axis", query.turn->axis}, {"angle", query.turn->angle}, {"centre", query.turn->centre}};
     const std::vector<uint32_t> left = ignoredBy(query, workload.scenes[query.scene]);
     if (!left.empty()) ignored[number] = left;
-    Json options = askedJson(query, workload.meshes[query.mesh].radius);
+    Json options = askedJson(query, query.chain ? 0 : workload.meshes[query.mesh].radius);
     if (!options.empty()) asked[number] = std::move(options);
   }
   Json json = poses.json();

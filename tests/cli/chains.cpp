@@ -1,7 +1,6 @@
 // Query files of chains: what answers say, and in which forms.
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
 #include "cli/page_data.h"
@@ -10,6 +9,7 @@
 
 using radar::test::checkRefused;
 using radar::test::Contains;
+using radar::test::linesOf;
 using radar::test::pageData;
 using radar::test::Run;
 using radar::test::runLab;
@@ -17,13 +17,6 @@ using radar::test::runProgram;
 using radar::test::ScratchFolder;
 
 namespace {
-
-std::vector<nlohmann::json> answersIn(const std::string& text) {
-  std::vector<nlohmann::json> answers;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) answers.push_back(nlohmann::json::parse(line));
-  return answers;
-}
 
 /// An upper arm 10 long, a finger 3 long at its end, which folds back onto it, and a wall across y = 8.
 void writeArm(const ScratchFolder& folder) {
@@ -64,7 +57,7 @@ TEST_CASE("a chain's answers name its links, and the moment that geometry says")
   const Run run = runProgram(folder, "query q.json");
   INFO(run.err);
   REQUIRE(run.status == 0);
-  const auto answers = answersIn(run.out);
+  const auto answers = linesOf(run.out);
   REQUIRE(answers.size() == 6);
   const auto& folds = answers[0];
   CAPTURE(folds.dump());

@@ -1,0 +1,49 @@
+// Round sensors in query files.
+#include "query_texts.h"
+
+using namespace radar;
+using namespace radar::tools;
+using radar::test::Files;
+using radar::test::goodFile;
+using radar::test::StartsWith;
+
+TEST_CASE("round sensors have their radius beside the clearance of a query") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["meshes"] = nlohmann::json::parse(R"(["a.obj", {"shape": "ball", "radius": 2}, {"file": "a.obj", "radius": 0.5},
+    {"shape": "capsule", "from": [1, 0, 0], "to": [5e6, 0, 0.1], "radius": 0.25}])");
+  file["queries"].erase(1);
+  for (int mesh = 1; mesh < 4; ++mesh) {
+    nlohmann::json query = file["queries"][0];
+    query["id"] = std::to_string(mesh);
+    query["sensor"] = {mesh};
+    if (mesh == 2) query["clearance"] = 0.125;
+    file["queries"].push_back(query);
+  }
+  const Workload workload = files.read(file.dump());
+  CHECK(workload.queries[0].clearance == 0);
+  CHECK(workload.queries[1].clearance == 2);
+  CHECK(workload.queries[2].clearance == 0.625);
+  CHECK(workload.queries[3].clearance == 0.25);
+  CHECK(workload.meshes[1].indices == std::vector<uint32_t>{0, 0, 0});
+  CHECK(workload.meshes[2].triangleCount() == 1);
+  CHECK(workload.meshes[3].indices == std::vector<uint32_t>{0, 1, 1});
+  for (size_t end = 0; end < 2; ++end) {
+    const auto at = transformPoint(workload.queries[3].worldFromMesh, &workload.meshes[3].positions[3 * end]);
+    CHECK(std::abs(at[0] - (end == 0 ? 1 : 5e6)) < 1);
+  }
+  // Likewise in arrays.
+  const std::filesystem::path folder = files.folder.path() / "arrays";
+  std::vector<std::string> warnings;
+  const std::string written = writeQueryFile(workload, folder, true).string();
+  nlohmann::json arrays = nlohmann::json::parse(files.folder.read("arrays/queries.json"));
+  arrays["meshes"][0] = {{"file", "mesh-0.ply"}, {"radius", 8}};
+  arrays["scenes"][0]["instances"] = {{3}};
+  arrays["scenes"][1]["instances"] = {{3}};
+  files.folder.write("arrays/queries.json", arrays.dump());
+  const Workload again = QueryFile(written, warnings).all();
+  CHECK(again.queries[0].clearance == 8);
+  CHECK(again.queries[2].clearance == 0.625);
+  file["queries"][1]["mode"] = "sampled";
+  CHECK_THAT(files.refusal(file.dump()), StartsWith("queries[1].mode: expected contact or reference"));
+}

@@ -68,18 +68,24 @@ struct Pair {
   Corners<Real> edges, gaps;  ///< the moving one; the resting one
   Point<Real> unit;
   Real clearance, distance, tolerance;
+  double size = 0;  ///< the greatest of the numbers that the others come from
 };
+
+// Lengths are at most 2 but for the way: triangles that have moved farther than this move apart, and are apart by more
+// than a clearance.
+constexpr double kPast = 8;
 
 /// `first`: where the nearest points may be.
 template <class Real>
 Moment<Real> momentAt(const Pair<Real>& pair, const Real& t, exact::FeaturePlace first = exact::kAnyPlace) {
-  const auto& [edges, gaps, unit, clearance, distance, tolerance] = pair;
+  const Corners<Real>&edges = pair.edges, &gaps = pair.gaps;
+  const Point<Real>& unit = pair.unit;
   Moment<Real> m;
   Corners<Real> b;
   for (size_t k = 0; k < 3; ++k) b[k] = gaps[k] - t * unit;
   // Differences, the motion and its direction lose less than 16u of these numbers; the nearest points, whatever their
   // weights, and inner products with a unit vector less than 16u more.
-  double size = Of<Real>::rounded(t);
+  double size = std::max(Of<Real>::rounded(t), pair.size);
   for (size_t k = 0; k < 3; ++k) size = std::max({size, norm1(gaps[k]), norm1(b[k]), norm1(edges[k])});
   m.error = Real{64 * Of<Real>::unit * size + std::numeric_limits<double>::min()};
   m.nearest = nearestPoints(edges, b, Real{0.5} * m.error, first);
@@ -184,6 +190,84 @@ std::optional<Found<Real>> search(const Pair<Real>& pair, Vector* across = nullp
   return found;
 }
 
+/// Bounds on the least distance of a pair on its way.
+template <class Real>
+struct Least {
+  Real lo{}, hi{Of<Real>::never};
+  Real way{};  ///< where it is at most `hi`
+  Moment<Real> at;
+};
+
+/// None if it certainly is more than the clearance.
+template <class Real>
+std::optional<Least<Real>> leastOf(const Pair<Real>& pair) {
+  struct Side {
+    Real t;
+    Moment<Real> moment;
+  };
+  Least<Real> found;
+  exact::FeaturePlace place = exact::kAnyPlace;
+  const auto sideAt = [&](const Real& t) {
+    Side side{t, momentAt(pair, t, place)};
+    place = side.moment.nearest.place;
+    if (side.moment.most < found.hi) {
+      found.hi = side.moment.most;
+      found.way = t;
+      found.at = side.moment;
+    }
+    return side;
+  };
+  // How fast the distance may fall at most, from a side's moment on and from it back: it is convex.
+  const auto onwards = [](const Side& side) { return side.moment.rate + kRateError<Real>; };
+  const auto backwards = [](const Side& side) { return kRateError<Real> - side.moment.rate; };
+  const auto isNear = [&] { return found.lo <= pair.clearance ? std::optional(found) : std::nullopt; };
+
+  Side left = sideAt(Real{});
+  found.lo = left.moment.least;
+  if (!(onwards(left) > Real{})) return isNear();
+  found.lo = left.moment.least - onwards(left) * pair.distance - left.moment.error;
+  if (found.lo > pair.clearance) return std::nullopt;
+  Side right = sideAt(pair.distance);
+  found.lo = right.moment.least;
+  if (!(backwards(right) > Real{})) return isNear();
+  for (int i = 0; i < kMostSteps; ++i) {
+    // Between the sides the distance is above the lines that these give.
+    const Real width = right.t - left.t, fall = onwards(left), rise = backwards(right);
+    const Real &atLeft = left.moment.least, &atRight = right.moment.least;
+    const Real meet = std::clamp((atLeft - atRight + rise * width) / (fall + rise), Real{}, width);
+    const Real lines = std::min(atLeft - fall * meet, atRight - rise * (width - meet)) - left.moment.error;
+    found.lo = std::max(lines, Real{});
+    if (found.lo > pair.clearance) return std::nullopt;
+    if (found.hi - found.lo <= Real{4} * left.moment.error) break;
+    // Its square is one of t while the nearest features stay the same.
+    const Real before = left.moment.rate * left.moment.most, after = Real{} - right.moment.rate * right.moment.most;
+    const bool isSecant = i % 2 == 0 && before > Real{} && after > Real{};
+    const Real t = left.t + (isSecant ? before / (before + after) * width : meet);
+    if (!(left.t < t && t < right.t)) break;
+    Side next = sideAt(t);
+    const bool falls = next.moment.rate > kRateError<Real>, rises = next.moment.rate < Real{} - kRateError<Real>;
+    if (falls) left = next;
+    if (rises) right = next;
+    if (falls || rises) continue;
+    // Level, as far as rounding tells. Sides near it keep what that may hide small.
+    for (Real off = Real{0x1p-10} * next.moment.most; off < width; off = Real{64} * off) {
+      const Real on = t + off, back = t - off;
+      if (on < right.t) {
+        if (const Side side = sideAt(on); side.moment.rate < Real{} - kRateError<Real>) right = side;
+      }
+      if (left.t < back) {
+        if (const Side side = sideAt(back); side.moment.rate > kRateError<Real>) left = side;
+      }
+      if (!(on < right.t) && !(left.t < back)) break;
+    }
+    const Real hidden = std::max(onwards(next) * (right.t - t), backwards(next) * (t - left.t));
+    const Real level = std::min({next.moment.least - hidden - next.moment.error, atLeft, atRight});
+    found.lo = std::max(found.lo, level);
+    break;
+  }
+  return isNear();
+}
+
 double difference(double p, double q, double) {
   return p - q;
 }
@@ -258,6 +342,33 @@ int exponentOf(const exact::Triangle& a, const exact::Triangle& b, double size) 
   return std::clamp(std::ilogb(size), -1000, 1000);
 }
 
+Pair<double> roughPair(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion, double clearance,
+                       double tolerance, double scale) {
+  return {relative<double>(a, a[0], scale),
+          relative<double>(b, a[0], scale),
+          motion.unit,
+          scale * clearance,
+          scale * motion.wayUntil(motion.end),
+          scale * tolerance};
+}
+
+Pair<DoubleDouble> finePair(const Pair<double>& rough, const exact::Triangle& a, const exact::Triangle& b,
+                            const Translation& motion, double scale) {
+  return {relative<DoubleDouble>(a, a[0], scale), relative<DoubleDouble>(b, a[0], scale),
+          normalised(motion.direction),           {rough.clearance},
+          {std::min(rough.distance, 1e290)},      {rough.tolerance}};
+}
+
+/// The same motion from its end back.
+template <class Real>
+Pair<Real> reversed(Pair<Real> pair) {
+  pair.size = Of<Real>::rounded(pair.distance);
+  for (const Point<Real>& gap : pair.gaps) pair.size = std::max(pair.size, norm1(gap));
+  for (Point<Real>& gap : pair.gaps) gap = gap - pair.distance * pair.unit;
+  pair.unit = Real{-1} * pair.unit;
+  return pair;
+}
+
 template <class Real>
 Nearing nearingOf(Pair<Real> pair, double slack) {
   const Moment<Real> start = momentAt(pair, Real{});
@@ -313,12 +424,7 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
   const double distance = motion.wayUntil(motion.end);
   const int exponent = exponentOf(a, b, clearance);
   const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
-  const Pair<double> rough{relative<double>(a, a[0], scale),
-                           relative<double>(b, a[0], scale),
-                           motion.unit,
-                           scale * clearance,
-                           scale * distance,
-                           scale * tolerance};
+  const Pair<double> rough = roughPair(a, b, motion, clearance, tolerance, scale);
   // A trial at the end may come out a little later, by the rounding of its bound.
   const auto withinWay = [&](Approach out) {
     if (!std::isinf(out.hi)) out.hi = std::min(out.hi, distance);
@@ -329,11 +435,57 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
   if (!found) return std::nullopt;
   if (!found->isRough || found->hi - found->lo <= rough.tolerance)
     return withinWay(inWorld(*found, a, b, motion.unit, unscale));
-  const Pair<DoubleDouble> fine{relative<DoubleDouble>(a, a[0], scale), relative<DoubleDouble>(b, a[0], scale),
-                                normalised(motion.direction),           {rough.clearance},
-                                {std::min(rough.distance, 1e290)},      {rough.tolerance}};
+  const Pair<DoubleDouble> fine = finePair(rough, a, b, motion, scale);
   const auto better = search(fine);
   return better ? std::optional(withinWay(inWorld(*better, a, b, fine.unit, unscale))) : std::nullopt;
+}
+
+std::optional<Approach> leaving(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
+                                double clearance, double tolerance) {
+  const int exponent = exponentOf(a, b, clearance);
+  const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
+  Pair<double> rough = roughPair(a, b, motion, clearance, tolerance, scale);
+  const bool goesPast = rough.distance > kPast;
+  rough.distance = std::min(rough.distance, kPast);
+  // From the end back.
+  const auto inTime = [&]<class Real>(const Found<Real>& found, const Point<Real>& unit) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const Real end{rough.distance};
+    if (!(found.hi < Real{Of<Real>::never})) return Approach{-kInfinity, unscale * roundedUp(end - found.lo), {}};
+    if (found.hi == Real{} && !goesPast) {
+      const double distance = motion.wayUntil(motion.end);
+      return Approach{distance, distance, inWorld(*found.atLo, end, a, b, unit, unscale)};
+    }
+    return Approach{unscale * std::max(roundedDown(Real{1 - 4 * kUnit} * (end - found.hi)), 0.0),
+                    unscale * roundedUp(Real{1 + 4 * kUnit} * (end - found.lo)),
+                    inWorld(*found.atLo, end - found.lo, a, b, unit, unscale)};
+  };
+  const Pair<double> back = reversed(rough);
+  const auto found = search(back);
+  if (!found) return std::nullopt;
+  if (!found->isRough || found->hi - found->lo <= rough.tolerance) return inTime(*found, motion.unit);
+  const Pair<DoubleDouble> fine = finePair(rough, a, b, motion, scale);
+  const auto better = search(reversed(fine));
+  return better ? std::optional(inTime(*better, fine.unit)) : std::nullopt;
+}
+
+std::optional<Passage> passage(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
+                               double reach) {
+  const int exponent = exponentOf(a, b, 0);
+  const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
+  Pair<double> rough = roughPair(a, b, motion, std::min(reach, unscale * kPast), 0, scale);
+  rough.distance = std::min(rough.distance, kPast);
+  const auto inWay = [&]<class Real>(const Least<Real>& found, const Point<Real>& unit) {
+    return Passage{unscale * roundedDown(found.lo), unscale * roundedUp(found.hi),
+                   std::min(unscale * Of<Real>::rounded(found.way), motion.wayUntil(motion.end)),
+                   inWorld(found.at, found.way, a, b, unit, unscale)};
+  };
+  const auto found = leastOf(rough);
+  if (!found) return std::nullopt;
+  if (found->hi - found->lo <= kFine * found->hi) return inWay(*found, motion.unit);
+  const Pair<DoubleDouble> fine = finePair(rough, a, b, motion, scale);
+  const auto better = leastOf(fine);
+  return better ? std::optional(inWay(*better, fine.unit)) : std::nullopt;
 }
 
 Nearing nearingOf(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, double clearance,
@@ -343,17 +495,15 @@ Nearing nearingOf(const exact::Triangle& a, const exact::Triangle& b, const Vect
   if (std::abs(exponent) > 900) return Nearing::open;
   const double scale = std::ldexp(1.0, -exponent);
   const Point<DoubleDouble> unit = normalised(direction);
-  // Then they move apart: corners and the clearance are at most 2.
-  constexpr double kEnd = 8;
   const Pair<double> rough{
-      relative<double>(a, a[0], scale), relative<double>(b, a[0], scale), rounded(unit), scale * clearance, kEnd, 0};
+      relative<double>(a, a[0], scale), relative<double>(b, a[0], scale), rounded(unit), scale * clearance, kPast, 0};
   const Nearing found = nearingOf(rough, scale * slack);
   if (found != Nearing::open) return found;
   const Pair<DoubleDouble> fine{relative<DoubleDouble>(a, a[0], scale),
                                 relative<DoubleDouble>(b, a[0], scale),
                                 unit,
                                 {rough.clearance},
-                                {kEnd},
+                                {kPast},
                                 {}};
   return nearingOf(fine, scale * slack);
 }

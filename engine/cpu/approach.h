@@ -37,6 +37,22 @@ struct Approach {
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
                                  double clearance, double tolerance, double latest, Vector* across = nullptr);
 
+/// The last of its motion, world units, at which triangle a is within `clearance` > 0 of b: from `lo`, -infinity if
+/// rounding leaves it open whether it ever is, to `hi`; both are the end if they are within it there. None if it
+/// certainly never is. `atLo`: if `lo` is known, about then.
+std::optional<Approach> leaving(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
+                                double clearance, double tolerance);
+
+/// How near two triangles come to each other.
+struct Passage {
+  double lo, hi;  ///< world units: their least distance is in there
+  double way;     ///< of the motion, world units, where it is at most `hi`
+  Separation at;  ///< there
+};
+/// On the whole motion of triangle a past b; none if they certainly do not come nearer than `reach`.
+std::optional<Passage> passage(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
+                               double reach);
+
 /// How exact::blocksWithin decides, as far as double-doubles tell.
 enum class Nearing {
   yes,      ///< the triangles block

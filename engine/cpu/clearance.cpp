@@ -83,12 +83,13 @@ bool ClearanceContact::counts(const exact::PlacedPair& pair) const {
   return !query_.ignoreLeaving || rule_.blocks(pair, *motion_, query_.clearance);
 }
 
-void NearestAtStart::consider(const exact::PairName& name, const exact::PlacedPair& pair) {
+void NearestAtStart::consider(const exact::PairName& name, const exact::PlacedPair& pair, const Translation& motion,
+                              const PairRule& rule) {
   if (isBefore(name)) return;
   const Separation found = separationOf(pair.a, pair.b);
   const bool isNearer = found.distance < nearest_.distance || (found.distance == nearest_.distance && name < name_);
   if (!isNearer) return;
-  if (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance)) return;
+  if (query_.ignoreLeaving && !rule.blocks(pair, motion, query_.clearance)) return;
   nearest_ = found;
   name_ = name;
   // Another one's distance may be rounded down to the same.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cpu/bracketed_contact.h"
+#include "cpu/nearest_search.h"
 #include "scene/scene.h"
 
 namespace radar::cpu {
@@ -44,35 +45,24 @@ class ClearanceContact final : public BracketedContact {
 };
 
 /// Of what is within a query's clearance at the start, finds the nearest pair, and of equals the least.
-class NearestAtStart {
+class NearestAtStart final : public NearVisitor {
  public:
   /// `query` must outlive this.
-  explicit NearestAtStart(const Query& query) : query_(query), reach_((1 + 0x1p-20) * query.clearance) {}
+  explicit NearestAtStart(const Query& query) : NearVisitor((1 + 0x1p-20) * query.clearance), query_(query) {}
 
-  /// `motion`: the query's past the next object, which must stay in place meanwhile.
-  void beginObject(const PairRule& rule, const Translation& motion) {
-    rule_ = rule;
-    motion_ = &motion;
-    if (query_.ignoreLeaving) lead_ = rule.leadOf(motion);
+  /// Call before an object is added to the search.
+  void allowFor(const PairRule& rule) {
     // What is pressed together may have sunk in.
     if (query_.ignoreLeaving && name_.object == kNone) reach_ = std::max(reach_, 2 * rule.slack);
   }
-  void consider(const exact::PairName& name, const exact::PlacedPair& pair);
-  /// No pair at a greater distance, world units, matters.
-  double reach() const { return reach_; }
-  /// As of a PairVisitor.
-  const Lead& lead() const { return lead_; }
-  /// Whether neither `least` nor a pair after it matters, because a lesser one touches.
-  bool isBefore(const exact::PairName& least) const { return nearest_.distance == 0 && name_ < least; }
+  void consider(const exact::PairName& name, const exact::PlacedPair& pair, const Translation& motion,
+                const PairRule& rule) override;
+  bool isBefore(const exact::PairName& least) const override { return nearest_.distance == 0 && name_ < least; }
   /// Sets ids, features, point, normal and gap.
   void describe(Result& result) const;
 
  private:
   const Query& query_;
-  const Translation* motion_ = nullptr;
-  PairRule rule_;
-  Lead lead_;
-  double reach_;
   exact::PairName name_;
   Separation nearest_{std::numeric_limits<double>::infinity(), {}, {}, {}};
 };

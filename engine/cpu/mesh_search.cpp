@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "cpu/node_gap.h"
+
 namespace radar::cpu {
 
 namespace {
@@ -90,108 +92,6 @@ class Opener {
   float scale_;  // of A's nodes in B's frame
 };
 
-/// Tells nodes that stay farther apart than a distance, by their extents along a normal.
-class GapTest {
- public:
-  explicit GapTest(const MeshPair& pair) : pair_(pair) {}
-
-  /// `n`: from B to A, or 0: nothing is known. `distance`: world units. `latest`: of the visitor's.
-  void set(const Vector& n, double distance, double latest) {
-    const PairMotion& motion = pair_.motion;
-    isKnown_ = n != Vector{};
-    if (!isKnown_) return;
-    // The height of A above B, but for their nodes' places, falls at a constant rate or does not fall.
-    const double way = motion.timeOf(latest) * dot(n, motion.travel);
-    const MeshPlacement &a = pair_.sensor.placement, &b = pair_.other.placement;
-    for (int k = 0; k < 3; ++k) {
-      alongA_[k] = n[0] * a.linear[0][k] + n[1] * a.linear[1][k] + n[2] * a.linear[2][k];
-      alongB_[k] = n[0] * b.linear[0][k] + n[1] * b.linear[1][k] + n[2] * b.linear[2][k];
-    }
-    // PairMotion::rounding holds 32 ulp of all that is summed here and below.
-    height_ = dot(n, motion.gap) + std::min(way, 0.0) - (1 + 0x1p-20) * std::sqrt(dot(n, n)) * distance -
-              2 * reachAlong(n, motion.rounding);
-  }
-
-  bool keepApart(const gpu::MeshNode& a, const gpu::MeshNode& b) const {
-    if (!isKnown_) return false;
-    double height = height_;
-    for (int k = 0; k < 3; ++k) {
-      height += alongA_[k] * a.centre[k] - std::abs(alongA_[k]) * a.halfExtent[k];
-      height -= alongB_[k] * b.centre[k] + std::abs(alongB_[k]) * b.halfExtent[k];
-    }
-    return height > 0;
-  }
-
- private:
-  const MeshPair& pair_;
-  bool isKnown_ = false;
-  Vector alongA_{}, alongB_{};
-  double height_ = 0;
-};
-
-/// When nodes come within the clearance, by a plane across the gap between their boxes shortly before. Slabs along axes
-/// test a box grown by the clearance, which reaches 1.7 times as far along its diagonal.
-class ReachTest {
- public:
-  explicit ReachTest(const MeshPair& pair)
-      : pair_(pair),
-        squared_(dot(pair.motion.travel, pair.motion.travel)),
-        perSquared_(squared_ > 0 ? 1 / squared_ : 0) {}
-
-  /// Not before this, in the pair's unit of time; after `latest` if not until then.
-  double operator()(const gpu::MeshNode& a, const gpu::MeshNode& b, double latest) const {
-    const PairMotion& motion = pair_.motion;
-    const Matrix3 &ofA = pair_.sensor.placement.linear, &ofB = pair_.other.placement.linear;
-    Vector apart, half;
-    for (int i = 0; i < 3; ++i) {
-      apart[i] = motion.gap[i];
-      half[i] = 0;
-      for (int k = 0; k < 3; ++k) {
-        apart[i] += ofA[i][k] * a.centre[k] - ofB[i][k] * b.centre[k];
-        half[i] += std::abs(ofA[i][k]) * a.halfExtent[k] + std::abs(ofB[i][k]) * b.halfExtent[k];
-      }
-    }
-    // Any time and any plane will do. The boxes meet at about the time at which balls around them do.
-    const double nearest = -perSquared_ * dot(apart, motion.travel);
-    const Vector passing = along(apart, nearest, motion.travel);
-    const double room = motion.clearance + std::sqrt(dot(half, half));
-    const double before = room * room - dot(passing, passing);
-    const double at = std::clamp(before > 0 ? nearest - std::sqrt(before * perSquared_) : nearest, 0.0, latest);
-    const Vector then = along(apart, at, motion.travel);
-    Vector n;
-    for (int i = 0; i < 3; ++i) n[i] = std::copysign(std::max(std::abs(then[i]) - half[i], 0.0), then[i]);
-    // Boxes that pass each other stay apart across the motion.
-    if (at == nearest) n = along(n, -perSquared_ * dot(n, motion.travel), motion.travel);
-    const double height = dot(n, motion.gap) - top(a, ofA, scaled(-1, n)) - top(b, ofB, n);
-    // PairMotion::rounding holds 32 ulp of all that is summed here.
-    const double spare =
-        height - (1 + 0x1p-20) * std::sqrt(dot(n, n)) * motion.clearance - 2 * reachAlong(n, motion.rounding);
-    const double speed = -dot(n, motion.travel);
-    return spare > 0 ? (1 - 0x1p-20) * spare / std::max(speed, 0x1p-1000) : 0;
-  }
-
- private:
-  /// Bound on n . x for all points x of a node, relative to the origin of the mesh: as of its box, or of its slab and
-  /// of the rest of its box.
-  static double top(const gpu::MeshNode& node, const Matrix3& linear, const Vector& n) {
-    double box = 0, slab = 0, along = 0;
-    Vector m;
-    for (int k = 0; k < 3; ++k) {
-      m[k] = n[0] * linear[0][k] + n[1] * linear[1][k] + n[2] * linear[2][k];
-      along += m[k] * node.normal[k];
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double rest = m[k] - along * node.normal[k];
-      box += m[k] * node.centre[k] + std::abs(m[k]) * node.halfExtent[k];
-      slab += rest * node.centre[k] + std::abs(rest) * node.halfExtent[k];
-    }
-    return std::min(box, slab + along * node.slabMiddle + std::abs(along) * node.slabHalf);
-  }
-
-  const MeshPair& pair_;
-  double squared_, perSquared_;
-};
-
 constexpr int32_t kNever = 0x7f800000;  // the bits of infinity
 
 /// A key that orders like `from`, rounded down, with the lane's number in its low two bits.
@@ -266,9 +166,9 @@ class StraightTest {
         leaves_(pair.sensor.mesh, pair.other.mesh, pair.fromOther),
         placeA_(pair.sensor),
         placeB_(pair.other),
-        gap_(pair),
-        lead_(pair),
-        reach_(pair) {
+        gap_(pair.sensor.placement, pair.other.placement, pair.motion),
+        lead_(gap_),
+        reach_(pair.sensor.placement, pair.other.placement, pair.motion) {
     update();
     lead_.set(visitor.lead().way, visitor.lead().by, visitor.latest());
   }
@@ -284,7 +184,7 @@ class StraightTest {
     for (int i = 0; i < 4; ++i) {
       from[i] = times.from[i];
       if (!(from[i] <= times.to[i] && from[i] <= latest_)) continue;
-      if (const double reached = reach_(*a[i], *b[i], latest_); reached > 0) {
+      if (const double reached = reach_.reached(*a[i], *b[i], latest_); reached > 0) {
         from[i] = std::max(from[i], static_cast<Real>(reached));
       }
     }
@@ -313,7 +213,7 @@ class StraightTest {
   LeafTest<Real> leaves_;
   TrianglePlacer placeA_, placeB_;
   GapTest gap_, lead_;
-  ReachTest reach_;
+  NodeGap reach_;
   float latest_ = 0;
 };
 

@@ -11,89 +11,84 @@ namespace {
 // Between two looks at whether the search is still wanted.
 constexpr uint32_t kVisits = 256;
 
-/// A node's box: where it is, relative to an origin of both meshes, and half its extent along the world's axes.
-struct PlacedNode {
-  const Matrix3& linear;
-  const gpu::MeshNode& node;
-  Vector middle, half;
-
-  PlacedNode(const MeshPlacement& placement, const Vector& origin, const gpu::MeshNode& box)
-      : linear(placement.linear), node(box), middle(origin) {
-    for (int i = 0; i < 3; ++i) {
-      half[i] = 0;
-      for (int k = 0; k < 3; ++k) {
-        middle[i] += linear[i][k] * node.centre[k];
-        half[i] += std::abs(linear[i][k]) * node.halfExtent[k];
-      }
-    }
-  }
-  /// How far the box reaches along n, times the length of n.
-  double reachAlong(const Vector& n) const {
-    double reach = 0;
-    for (int k = 0; k < 3; ++k) {
-      reach += std::abs(n[0] * linear[0][k] + n[1] * linear[1][k] + n[2] * linear[2][k]) * node.halfExtent[k];
-    }
-    return reach;
-  }
-};
-
-/// Bound on the distance of what two nodes hold: of their boxes along the world's axes, or along the line of their
-/// middles; infinite if all pairs have the lead.
-double leastBetween(const PlacedNode& a, const PlacedNode& b, const Vector& rounding, const Lead& lead) {
-  Vector apart, gap;
-  for (int i = 0; i < 3; ++i) {
-    apart[i] = a.middle[i] - b.middle[i];
-    gap[i] = std::max(std::abs(apart[i]) - a.half[i] - b.half[i] - rounding[i], 0.0);
-  }
-  const double ahead = dot(lead.way, apart) - a.reachAlong(lead.way) - b.reachAlong(lead.way);
-  if (ahead - radar::reachAlong(lead.way, rounding) > (1 + 8 * kUnit) * lead.by) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const double length = std::sqrt(dot(apart, apart)), boxes = std::sqrt(dot(gap, gap));
-  if (!(length > 0)) return boxes;
-  const double along = length * length - a.reachAlong(apart) - b.reachAlong(apart) - radar::reachAlong(apart, rounding);
-  return (1 - 8 * kUnit) * std::max(boxes, along / length);
+/// A bound on the sides of a node's box, world units.
+double sizeOf(const MeshPlacement& placement, const gpu::MeshNode& node) {
+  const Vector half{node.halfExtent[0], node.halfExtent[1], node.halfExtent[2]};
+  double size = 0;
+  for (const Vector& row : placement.linear) size += reachAlong(row, half);
+  return size;
 }
 
 }  // namespace
 
-void NearestSearch::run(const PlacedMesh& sensor, const PlacedMesh& other, ObjectId object, NearestAtStart& nearest,
-                        uint64_t& pairs, const std::stop_token& stop) {
-  const MeshTree &treeA = sensor.mesh.tree, &treeB = other.mesh.tree;
-  const MeshPlacement &ofA = sensor.placement, &ofB = other.placement;
-  Vector gap, rounding;
-  for (int i = 0; i < 3; ++i) {
-    gap[i] = ofA.origin[i] - ofB.origin[i];
-    rounding[i] = ofA.error[i] + ofB.error[i] + 32 * kUnit * (ofA.extent[i] + ofB.extent[i] + std::abs(gap[i]));
-  }
-  const auto placedA = [&](uint32_t a) { return PlacedNode(ofA, gap, treeA.nodes[a]); };
-  const auto placedB = [&](uint32_t b) { return PlacedNode(ofB, {}, treeB.nodes[b]); };
-  const auto openOf = [&](uint32_t a, uint32_t b) {
-    return Open{leastBetween(placedA(a), placedB(b), rounding, nearest.lead()), a, b};
-  };
-  open_ = {openOf(0, 0)};
-  for (uint32_t visits = 1; !open_.empty(); ++visits) {
-    if (visits % kVisits == 0) throwIfStopped(stop);
+NearestSearch::Other::Other(ObjectId id, const Mesh& m, const Transform& p, const MeshPlacement& sensor,
+                            const Translation& t, const Piece& w, const PairRule& r)
+    : object(id),
+      mesh(m),
+      pose(p),
+      placement(m, p),
+      motion(t),
+      way(w),
+      rule(r),
+      pair(sensor, placement, way, std::numeric_limits<double>::infinity(), way.end),
+      gap(sensor, placement, pair),
+      lead(sensor, placement, pair) {}
+
+void NearestSearch::begin(const PlacedMesh& sensor, NearVisitor& visitor, const std::stop_token& stop) {
+  sensor_ = &sensor;
+  visitor_ = &visitor;
+  stop_ = &stop;
+  others_.clear();
+  open_.clear();
+}
+
+void NearestSearch::add(ObjectId object, const Mesh& mesh, const Transform& pose, const Translation& motion,
+                        const Piece& way, const PairRule& rule, const Lead& lead) {
+  throwIfStopped(*stop_);
+  Other& other = others_.emplace_back(object, mesh, pose, sensor_->placement, motion, way, rule);
+  other.lead.set(lead.way, lead.by, way.end);
+  push(static_cast<uint32_t>(others_.size() - 1), 0, 0, {});
+}
+
+void NearestSearch::push(uint32_t index, uint32_t a, uint32_t b, const Vector& across) {
+  const Other& other = others_[index];
+  const gpu::MeshNode &nodeA = sensor_->mesh.tree.nodes[a], &nodeB = other.mesh.tree.nodes[b];
+  Open open{0, index, a, b, across};
+  open.least = other.gap.least(nodeA, nodeB, visitor_->reach(), open.across);
+  if (open.least > visitor_->reach()) return;
+  open_.push_back(open);
+  std::ranges::push_heap(open_, std::ranges::greater(), &Open::least);
+}
+
+void NearestSearch::advance(double until, uint64_t& pairs) {
+  const MeshTree& treeA = sensor_->mesh.tree;
+  while (!open_.empty() && open_[0].least <= until && open_[0].least <= visitor_->reach()) {
+    if (++visits_ % kVisits == 0) throwIfStopped(*stop_);
+    std::ranges::pop_heap(open_, std::ranges::greater(), &Open::least);
     const Open open = open_.back();
     open_.pop_back();
-    const MeshTree::Below &belowB = treeB.below[open.b], &belowA = treeA.below[open.a];
-    if (open.least > nearest.reach() || nearest.isBefore({object, belowB.least, belowA.least})) continue;
+    const Other& other = others_[open.other];
+    const MeshTree& treeB = other.mesh.tree;
+    const MeshTree::Below &belowA = treeA.below[open.a], &belowB = treeB.below[open.b];
+    if (visitor_->isBefore({other.object, belowB.least, belowA.least})) continue;
     const gpu::MeshNode &a = treeA.nodes[open.a], &b = treeB.nodes[open.b];
+    if (other.lead.keepApart(a, b)) continue;
     if (!isLeaf(a) || !isLeaf(b)) {
-      const bool opensA = isLeaf(b) || (!isLeaf(a) && norm1(placedA(open.a).half) > norm1(placedB(open.b).half));
-      Open nearer = opensA ? openOf(a.link, open.b) : openOf(open.a, b.link);
-      Open farther = opensA ? openOf(a.link + 1, open.b) : openOf(open.a, b.link + 1);
-      if (farther.least < nearer.least) std::swap(nearer, farther);
-      open_.push_back(farther);
-      open_.push_back(nearer);
+      const bool opensA = isLeaf(b) || (!isLeaf(a) && sizeOf(sensor_->placement, a) > sizeOf(other.placement, b));
+      for (uint32_t child = 0; child < 2; ++child) {
+        if (opensA) push(open.other, a.link + child, open.b, open.across);
+        if (!opensA) push(open.other, open.a, b.link + child, open.across);
+      }
       continue;
     }
     pairs += size_t{belowA.count} * belowB.count;
     for (uint32_t i = 0; i < belowA.count * belowB.count; ++i) {
       const uint32_t triA = treeA.order[belowA.first + i % belowA.count];
       const uint32_t triB = treeB.order[belowB.first + i / belowA.count];
-      nearest.consider({object, triB, triA},
-                       {placedTriangle(sensor.mesh, sensor.pose, triA), placedTriangle(other.mesh, other.pose, triB)});
+      visitor_->consider(
+          {other.object, triB, triA},
+          {placedTriangle(sensor_->mesh, sensor_->pose, triA), placedTriangle(other.mesh, other.pose, triB)},
+          other.motion, other.rule);
     }
   }
 }

@@ -2,11 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cpu/clearance.h"
-#include "query/swept.h"
+#include "cpu/closest_approach.h"
+#include "cpu/last_contact.h"
+#include "query/near_walk.h"
 
 namespace radar::cpu {
+
+namespace {
+
+const Piece kAtRest;
+
+}  // namespace
 
 /// A query, prepared for the search.
 struct QuerySearch::Task {
@@ -62,19 +71,106 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
       finder.endObject();
     });
     if (lists != nullptr) {
-      *lists = {finder.nearest(), skipped};
+      *lists = {finder.nearest(), skipped, {}, {}};
       for (Result& hit : lists->hits) task.course.toQuery(hit);
     }
     Result first = finder.first();
     task.course.toQuery(first);
     return first;
   };
+  Result first;
   if (query.clearance > 0) {
-    Result first = find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
+    first = find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
     describeStart(query, scene, tree, skipped, first, lists);
-    return first;
+  } else {
+    first = find(FirstContact(query, task.motion));
   }
-  return find(FirstContact(query, task.motion));
+  if (query.exit) lists->exit = lastContact(task, tree, skipped, first);
+  if (query.closest) lists->closest = closestApproach(query, scene, tree, skipped, first);
+  return first;
+}
+
+Result QuerySearch::lastContact(const Task& task, const ObjectTree& tree, std::span<const ObjectId> skipped,
+                                const Result& first) {
+  if (first.status == Status::clear) return first;
+  const Query& query = task.query;
+  const Translation& motion = task.motion;
+  Box box = roomyBox(query, task.scene);
+  double end = motion.end;
+  if (!motion.isStep) {
+    // Once the sensor has passed all objects along this axis, it touches none of them any more.
+    const Box& world = tree.worldBox();
+    size_t f = 0;
+    for (size_t k = 1; k < 3; ++k) f = std::abs(motion.unit[k]) > std::abs(motion.unit[f]) ? k : f;
+    const double way = std::max(world.hi[f] - box.lo[f], box.hi[f] - world.lo[f]);
+    end = std::min(end, std::max(1.01 * way / std::abs(motion.unit[f]), 0.0));
+  }
+  Piece back;
+  back.unit = scaled(-1, motion.unit);
+  back.end = end;
+  back.rate = motion.rate;
+  for (size_t k = 0; k < 3; ++k) {
+    const double shift = motion.wayUntil(end) * motion.unit[k];
+    box.lo[k] += shift - 32 * kUnit * (std::abs(box.lo[k]) + std::abs(shift));
+    box.hi[k] += shift + 32 * kUnit * (std::abs(box.hi[k]) + std::abs(shift));
+  }
+  LastContact finder(query, end, toleranceOf(query, task.sensor));
+  const auto wants = [&](double near) { return !finder.isDecided() && near <= back.wayUntil(finder.latest()); };
+  walk(Participants(query, task.scene), tree, back, box, wants, [&](ObjectId id) {
+    if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
+    const Translation& past = pastOf(task, id);
+    finder.beginObject({}, past);
+    MeshPlacement atEnd = task.placement;
+    for (size_t k = 0; k < 3; ++k) {
+      const double shift = past.wayUntil(end) * past.unit[k];
+      atEnd.origin[k] += shift;
+      atEnd.error[k] += 32 * kUnit * (std::abs(atEnd.origin[k]) + std::abs(shift));
+    }
+    Piece own = back;
+    own.unit = scaled(-1, past.unit);
+    own.rate = past.rate;
+    searchObject(task, id, atEnd, own, query.clearance, finder);
+  });
+  Result last = finder.answer();
+  task.course.toQuery(last);
+  if (last.status == Status::hit) last.t = last.hi;
+  return last;
+}
+
+Closest QuerySearch::closestApproach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
+                                     std::span<const ObjectId> skipped, const Result& first) {
+  // Whether surfaces meet is decided exactly.
+  Result meeting = first;
+  if (first.status != Status::clear && (query.clearance > 0 || query.anyHit)) {
+    Query exactly = query;
+    exactly.clearance = 0;
+    exactly.anyHit = exactly.closest = exactly.exit = exactly.skipOverlapping = false;
+    exactly.hits = 1;
+    exactly.exclude.insert(exactly.exclude.end(), skipped.begin(), skipped.end());
+    meeting = answer(exactly, scene, tree, nullptr, *stop_);
+  }
+  if (meeting.status != Status::clear) return {0, 0, meeting};
+  Query near = query;
+  near.ignoreLeaving = near.skipOverlapping = false;
+  const Task task(near, scene);
+  ClosestApproach finder;
+  const PlacedMesh sensor{task.sensor, query.worldFromMesh, task.placement};
+  nearest_.begin(sensor, finder, *stop_);
+  const auto reach = [&](double least) {
+    nearest_.advance(least, pairs_);
+    return finder.reach();
+  };
+  walkNear(Participants(query, scene), tree, task.motion, boxOf(task.sensor, query.worldFromMesh.m), reach,
+           [&](ObjectId id) {
+             if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
+             const Object& object = scene.objects[id].object;
+             const Translation& past = pastOf(task, id);
+             nearest_.add(id, scene.meshes[object.mesh], object.worldFromMesh, past, past, {}, {});
+           });
+  nearest_.advance(std::numeric_limits<double>::infinity(), pairs_);
+  Closest closest = finder.answer();
+  task.course.toQuery(closest.at);
+  return closest;
 }
 
 Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
@@ -106,7 +202,7 @@ Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, con
     if (i + 1 == reached.size() || reached[i + 1].first != reached[i].first) finder.endObject();
   }
   Result first = finder.first();
-  if (lists != nullptr) *lists = {finder.nearest(), {skipped.begin(), skipped.end()}};
+  if (lists != nullptr) *lists = {finder.nearest(), {skipped.begin(), skipped.end()}, {}, {}};
   if (first.status == Status::overlap) {
     Query still = query;
     still.motion = Vector{};
@@ -164,26 +260,29 @@ void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, co
   const Task task(query, scene);
   NearestAtStart nearest(query);
   const PlacedMesh sensor{task.sensor, query.worldFromMesh, task.placement};
-  const auto consider = [&](ObjectId id, NearestAtStart& finder) {
+  const auto add = [&](ObjectId id, NearestAtStart& finder) {
     const Object& object = scene.objects[id].object;
-    const Mesh& mesh = scene.meshes[object.mesh];
+    const PairRule rule = task.ruleFor(id);
     const Translation motion = task.course.past(id);
-    finder.beginObject(task.ruleFor(id), motion);
-    nearest_.run(sensor, {mesh, object.worldFromMesh, MeshPlacement(mesh, object.worldFromMesh)}, id, finder, pairs_,
-                 *stop_);
+    finder.allowFor(rule);
+    nearest_.add(id, scene.meshes[object.mesh], object.worldFromMesh, motion, kAtRest, rule,
+                 query.ignoreLeaving ? rule.leadOf(motion) : Lead{});
   };
-  walk(
-      Participants(query, scene), tree, Translation(Vector{}, {}), roomyBox(query, scene),
-      [](double near) { return near <= 0; },
+  nearest_.begin(sensor, nearest, *stop_);
+  walkNear(
+      Participants(query, scene), tree, kAtRest, roomyBox(query, scene), [](double) { return 0.0; },
       [&](ObjectId id) {
-        if (!std::binary_search(skipped.begin(), skipped.end(), id)) consider(id, nearest);
+        if (!std::binary_search(skipped.begin(), skipped.end(), id)) add(id, nearest);
       });
+  nearest_.advance(std::numeric_limits<double>::infinity(), pairs_);
   nearest.describe(first);
   for (size_t i = 0; lists != nullptr && i < lists->hits.size(); ++i) {
     Result& hit = lists->hits[i];
     if (hit.status != Status::overlap) continue;
     NearestAtStart own(query);
-    consider(hit.object, own);
+    nearest_.begin(sensor, own, *stop_);
+    add(hit.object, own);
+    nearest_.advance(std::numeric_limits<double>::infinity(), pairs_);
     own.describe(hit);
   }
 }
@@ -191,15 +290,19 @@ void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, co
 template <class Finder>
 void QuerySearch::search(const Task& task, ObjectId id, Finder& finder) {
   const PairRule rule = task.ruleFor(id);
-  const Translation& motion = task.course.isStep() ? past_.emplace(task.course.past(id)) : task.motion;
+  const Translation& motion = pastOf(task, id);
   finder.beginObject(rule, motion);
   // Faces that are pressed together may have passed each other by the slack.
   const double room = task.query.ignoreLeaving ? 2 * rule.slack : 0;
-  searchObject(task, id, motion, std::max(task.query.clearance, room), finder);
+  searchObject(task, id, task.placement, motion, std::max(task.query.clearance, room), finder);
 }
 
-void QuerySearch::searchObject(const Task& task, ObjectId id, const Piece& piece, double clearance,
-                               PairVisitor& visitor) {
+const Translation& QuerySearch::pastOf(const Task& task, ObjectId id) {
+  return task.course.isStep() ? past_.emplace(task.course.past(id)) : task.motion;
+}
+
+void QuerySearch::searchObject(const Task& task, ObjectId id, const MeshPlacement& sensor, const Piece& piece,
+                               double clearance, PairVisitor& visitor) {
   throwIfStopped(*stop_);
   const Object& object = task.scene.objects[id].object;
   const Mesh& mesh = task.scene.meshes[object.mesh];
@@ -207,16 +310,16 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, const Piece& piece
 
   const gpu::MeshNode &rootA = task.sensor.tree.nodes[0], &rootB = mesh.tree.nodes[0];
   const MeshPlacement placement(mesh, object.worldFromMesh);
-  const PairMotion pairMotion(task.placement, placement, piece, clearance, visitor.latest());
+  const PairMotion pairMotion(sensor, placement, piece, clearance, visitor.latest());
   TimeSpan times;
   // The sensor's axes come first: they rule out most objects, and those of the object need a matrix inverse.
   const RelativePlacement fromSensor(task.axes, placement, pairMotion, -1);
   narrow(times, fromSensor, rootA, rootB);
   if (times.empty()) return;
-  const RelativePlacement fromObject(MeshAxes(placement.linear), task.placement, pairMotion, 1);
+  const RelativePlacement fromObject(MeshAxes(placement.linear), sensor, pairMotion, 1);
   narrow(times, fromObject, rootB, rootA);
   if (times.empty()) return;
-  const MeshPair pair{{task.sensor, task.query.worldFromMesh, task.placement},
+  const MeshPair pair{{task.sensor, task.query.worldFromMesh, sensor},
                       {mesh, object.worldFromMesh, placement},
                       id,
                       pairMotion,

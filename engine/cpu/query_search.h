@@ -33,10 +33,17 @@ class QuerySearch {
                     std::span<const ObjectId> skipped, Listed* lists);
   void searchTurning(const Task& task, ObjectId id, const TurnMotion& motion, const PathPart& part,
                      TurnContact& finder);
+  /// `first`: the answer to the query.
+  Result lastContact(const Task& task, const ObjectTree& tree, std::span<const ObjectId> skipped, const Result& first);
+  Closest closestApproach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
+                          std::span<const ObjectId> skipped, const Result& first);
   template <class Finder>
   void search(const Task& task, ObjectId id, Finder& finder);
-  /// `clearance`: as of a PairMotion.
-  void searchObject(const Task& task, ObjectId id, const Piece& piece, double clearance, PairVisitor& visitor);
+  /// Stays in place until the next one.
+  const Translation& pastOf(const Task& task, ObjectId id);
+  /// `sensor`: its placement at the piece's start. `clearance`: as of a PairMotion.
+  void searchObject(const Task& task, ObjectId id, const MeshPlacement& sensor, const Piece& piece, double clearance,
+                    PairVisitor& visitor);
 
   const std::stop_token* stop_ = nullptr;  // of the answer in hand
   std::optional<Translation> past_;        // the sensor's motion past the current object, in a step

@@ -35,6 +35,8 @@ void Search::run(std::span<const Query> queries, const Scene::Impl& scene, std::
       results[i].tier = tier_;
       if (listed == nullptr) continue;
       for (Result& hit : listed->hits) hit.tier = tier_;
+      if (listed->closest) listed->closest->at.tier = tier_;
+      if (listed->exit) listed->exit->tier = tier_;
     }
   };
   const Clock::time_point start = Clock::now();

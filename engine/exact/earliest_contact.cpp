@@ -28,7 +28,6 @@ bool EarliestContact::considerPressed(const PairName& name, const PlacedPair& pa
   return offer(name, pair, beginning, [] { return true; });
 }
 
-// -1, 0 or 1: the event comes before, at or after the end of the motion.
 int EarliestContact::compareToEnd(const Event& event, const Translation& motion) {
   if (event.s + event.error < motion.parameter) return -1;
   if (motion.isStep) return compareToParameter(event, motion.stands ? 0 : 1);
@@ -108,7 +107,7 @@ void EarliestContact::describe(Result& result) const {
   if (overlap_) {
     result.t = result.lo = result.hi = result.fraction = 0;
   } else {
-    setBracket(result, s * kept_.length);
+    setTimes(result, event_, s, kept_);
   }
 }
 
@@ -136,13 +135,13 @@ Vector EarliestContact::normalOf() const {
   return contactNormal(event_, span_, pairs);
 }
 
-void EarliestContact::setBracket(Result& result, double t) const {
-  const double distance = kept_.end;
-  const bool atEnd = compareToEnd(event_, kept_) == 0;
+void EarliestContact::setTimes(Result& result, const Event& event, double s, const Translation& motion) {
+  const double distance = motion.end, t = s * motion.length;
+  const bool atEnd = compareToEnd(event, motion) == 0;
   result.t = atEnd ? distance : std::min(t, distance);
   // Three roundings of half an ulp each, of the parameter, the length and the product, and one more here; the floor is
   // what the parameter may lose if it is subnormal.
-  const double slack = 8 * kUnit * t + (kept_.length + 2) * std::numeric_limits<double>::denorm_min();
+  const double slack = 8 * kUnit * t + (motion.length + 2) * std::numeric_limits<double>::denorm_min();
   result.lo = atEnd ? distance : std::min(std::max(t - slack, 0.0), result.t);
   result.hi = atEnd ? distance : std::min(t + slack, distance);
   result.fraction = result.t / distance;

@@ -47,6 +47,11 @@ class EarliestContact {
   double latest() const;
   /// Whether this contact comes before another one, by (time, name). Both are found, for the same query.
   bool precedes(const EarliestContact& other) const;
+  /// -1, 0 or 1: the event comes before, at or after the end of the motion.
+  static int compareToEnd(const Event& event, const Translation& motion);
+  /// Sets t, its bracket and the fraction to those of an event at `s` = parameter(event), after the start and not after
+  /// the end.
+  static void setTimes(Result& result, const Event& event, double s, const Translation& motion);
   /// The answer to a query for the first contact, or with `anyHit` for any, without the tier; clear if none was found.
   Result answer(bool anyHit) const;
 
@@ -69,12 +74,10 @@ class EarliestContact {
   int orderOf(const Beginning& beginning) const;
   bool keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning, int order);
   static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
-  static int compareToEnd(const Event& event, const Translation& motion);
   void describe(Result& result) const;
   /// After moving by `s`. `begins`: contact does then, else it has begun before the start.
   Vector pointAt(double s, bool begins) const;
   Vector normalOf() const;
-  void setBracket(Result& result, double t) const;
 
   const Translation* motion_;
   Translation kept_;  // of the earliest contact

@@ -35,6 +35,8 @@ void makeRoom(size_t count, bool lists, Answers& answers) {
   for (Listed& listed : answers.lists) {
     listed.hits.clear();
     listed.overlapping.clear();
+    listed.closest.reset();
+    listed.exit.reset();
   }
   answers.reasons.clear();
   answers.stats = {};

@@ -11,7 +11,7 @@ namespace radar {
 
 /// Whether a query lists more than its first contact.
 inline bool hasLists(const Query& query) {
-  return query.hits > 1 || query.skipOverlapping;
+  return query.hits > 1 || query.skipOverlapping || query.closest || query.exit;
 }
 
 /// Makes room for the answers to `count` queries, and for their lists if they have some, in the memory that `answers`

@@ -30,6 +30,7 @@ bool isPlain(const Query& query, const Scene& scene) {
 
 const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRevise) {
   if (query.turn) return "a turn";
+  if (query.closest || query.exit) return "closest or exit";
   const bool step = isStep(query, scene);
   if (query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || step)) {
     return "a clearance with ignoreLeaving, hits or a step";

@@ -103,8 +103,12 @@ std::string validate(const Query& query, const Scene& scene, Mode mode) {
   }
   if (query.hits == 0) return "hits: expected 1 or more, got 0";
   if (query.hits > 1 && query.anyHit) return "hits: expected 1 with anyHit, got " + std::to_string(query.hits);
+  if ((query.closest || query.exit) && (query.turn || query.ignoreLeaving)) {
+    return std::string(query.closest ? "closest" : "exit") + ": expected neither a turn nor ignoreLeaving beside it";
+  }
   if (mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
-    return "mode: expected contact with ignoreLeaving, skipOverlapping, clearance or several hits, got sampled";
+    return "mode: expected contact with ignoreLeaving, skipOverlapping, clearance, closest, exit or several hits, got "
+           "sampled";
   }
   if (mode == Mode::sampled && isStep(query, scene.impl())) {
     return "mode: expected contact with a motion, of the query or of objects, got sampled";

@@ -1,5 +1,4 @@
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
 #include "cli/page_data.h"
@@ -7,6 +6,7 @@
 #include "support/catch.h"
 
 using radar::test::Contains;
+using radar::test::linesOf;
 using radar::test::pageData;
 using radar::test::Run;
 using radar::test::runLab;
@@ -14,13 +14,6 @@ using radar::test::runProgram;
 using radar::test::ScratchFolder;
 
 namespace {
-
-std::vector<nlohmann::json> linesOf(const std::string& text) {
-  std::vector<nlohmann::json> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(nlohmann::json::parse(line));
-  return lines;
-}
 
 /// Writes queries in which a triangle in the plane z = 0 moves up towards others.
 void writeTriangles(const ScratchFolder& folder) {
@@ -240,6 +233,50 @@ TEST_CASE("query leaves what the sensor rests on, skips what it crosses and list
   const Run sampled = runProgram(folder, "query q.json --mode sampled");
   CHECK(sampled.status == 2);
   CHECK_THAT(sampled.err, Contains("--mode: expected contact or reference") && Contains("\"up\""));
+}
+
+TEST_CASE("query tells the closest approach and the last contact, and a page shows where") {
+  const ScratchFolder folder;
+  // In the plane z = 0; a sensor that passes beside it, one that goes through it, and one with nothing around.
+  folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+  folder.write("rod.obj", "v 0 0 -1\nv 0 0 1\nv 0.5 0 0\nf 1 2 3\n");
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj", "rod.obj"],
+    "scenes": [{"id": "a", "instances": [[0]]}],
+    "queries": [{"id": "past", "scene": 0, "sensor": [1, 1,0,0,-9, 0,1,0,-3, 0,0,1,0], "dir": [1,0,0], "D": 20,
+                 "closest": true, "exit": true},
+                {"id": "through", "scene": 0, "sensor": [1, 1,0,0,1, 0,1,0,1, 0,0,1,0.5], "dir": [0,0,2], "D": 8,
+                 "closest": true, "exit": true},
+                {"id": "stuck", "scene": 0, "sensor": [1, 1,0,0,1, 0,1,0,1, 0,0,1,0.5], "dir": [0,0,2], "D": 0.25,
+                 "exit": true},
+                {"id": "alone", "scene": 0, "sensor": [1], "exclude": [0], "dir": [0,0,2], "D": 8, "closest": true}]})");
+  const char* mode = GENERATE("contact", "reference");
+  CAPTURE(mode);
+  const Run run = runProgram(folder, std::string("query q.json --out a.jsonl --mode ") + mode);
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  const auto lines = linesOf(folder.read("a.jsonl"));
+  const nlohmann::json &closest = lines[0]["closest"], &exit = lines[1]["exit"];
+  CHECK((closest["distance_lo"] <= 3 && closest["distance_hi"] >= 3 && closest["distance_hi"] < 3 + 1e-12));
+  CHECK((closest["object"] == 0 && !closest.contains("lo")));
+  CHECK(closest["normal"] == nlohmann::json::parse("[0, -1, 0]"));
+  CHECK(lines[0]["exit"].is_null());
+  CHECK((lines[1]["closest"]["distance_hi"] == 0 && lines[1]["closest"]["t"] == 0));
+  CHECK((exit["lo"] <= 0.5 && exit["t"] == exit["hi"] && exit["hi"] >= 0.5 && exit["hi"] < 0.5 + 1e-14));
+  CHECK((exit["feature_a"] == "vertex" && exit["feature_b"] == "face"));
+  CHECK((lines[2]["exit"]["lo"] == 0.25 && lines[2]["exit"]["hi"] == 0.25 && !lines[2].contains("closest")));
+  CHECK(lines[3]["closest"].is_null());
+
+  REQUIRE(runProgram(folder, "view q.json a.jsonl --out page.html").status == 0);
+  const nlohmann::json data = pageData(folder.read("page.html"));
+  CHECK(data["moments"]["as"] == nlohmann::json({{"u1", "AQECAg=="}}));  // closest, closest, exit, exit
+  const Run table = runProgram(folder, "query q.json --out a.csv");
+  CHECK(table.status == 2);
+  CHECK_THAT(table.err, Contains("\"closest\" or \"exit\" have lists (query \"past\")"));
+  const Run sweep =
+      runProgram(folder, "sweep a.obj rod.obj --at 1 1 0.5 --direction 0 0 1 --distance 8 --exit --closest");
+  CHECK(sweep.status == 0);
+  CHECK_THAT(sweep.out,
+             Contains("nearest 0 to object 0") && Contains("out of  object 0 (a.obj), and of all others, after 0.5"));
 }
 
 TEST_CASE("sweep lifts a crate from the floor that it rests on") {

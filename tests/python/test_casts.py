@@ -280,6 +280,35 @@ def test_hits_and_what_overlaps_are_listed():
     assert plain.hits is None and plain.overlapping is None
 
 
+def test_the_closest_approach_and_the_last_contact():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0, 0, -3], [20, 0, 0]]))
+    poses = at([[0, 0, 0], [2, 0, -9], [50, 0, 0]])
+    poses[2, 0, 0] = np.nan
+    for mode in ("contact", "reference"):
+        casts = scene.cast(mesh, poses, [0, 0, -12], closest=True, exit=True, mode=mode)
+        assert casts.status.tolist() == [Status.HIT, Status.CLEAR, Status.INVALID]
+        closest = casts.closest
+        assert closest.distance_lo[0] == closest.distance_hi[0] == 0
+        assert closest.t[0] == casts.t[0] == 2
+        assert closest.distance_lo[1] <= np.sqrt(26) <= closest.distance_hi[1] < np.sqrt(26) + 1e-12
+        assert (closest.t[1], closest.object[1]) == (0, 0)
+        assert closest.gap[1] == pytest.approx(np.sqrt(26))
+        assert np.isnan(closest.distance_lo[2]) and closest.status[2] == Status.INVALID
+        assert casts.exit.lo[0] <= 4 <= casts.exit.hi[0] == casts.exit.t[0] < 4 + 1e-14
+        assert casts.exit.status.tolist() == [Status.HIT, Status.CLEAR, Status.INVALID]
+        assert casts[1].closest.distance_lo == closest.distance_lo[1] and casts[:2].exit.shape == (2,)
+    # A ball is out of the radius, and its distance is its centre's.
+    casts = scene.cast(cyber_radar.ball(1), at([0, 0, -3]), [0, 0, 9], closest=True, exit=True)
+    assert casts.exit.t == pytest.approx(1.5, abs=1e-11)
+    assert scene.cast(mesh, None, [0, 0, 1]).closest is None
+    with pytest.raises(ValueError, match="closest"):
+        scene.cast(mesh, None, [0, 0, 1], closest=True, mode="sampled")
+    turned = scene.cast(mesh, None, None, turns=([0, 0, 1], 1, [0, 0, 0]), exit=True)
+    assert list(turned.reasons) == ["exit: expected neither a turn nor ignoreLeaving beside it"]
+
+
 def test_an_index_gives_the_casts_there_with_all_that_they_list(boxes):
     scene, mesh = boxes
     rng = np.random.default_rng(15)

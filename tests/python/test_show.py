@@ -79,10 +79,10 @@ def test_a_page_has_every_option_and_what_is_listed(tmp_path):
         "1": {"ignore_leaving": True, "slack": 1e-9, "hits": "all"},
         "2": {"slack": 1e-9},
     }
-    assert numbers(shown["hits"]["object"]).tolist() == casts.hits.object.tolist()
-    np.testing.assert_array_equal(numbers(shown["hits"]["t"]), casts.hits.t)
+    assert numbers(shown["moments"]["object"]).tolist() == casts.hits.object.tolist()
+    np.testing.assert_array_equal(numbers(shown["moments"]["t"]), casts.hits.t)
     part = page_data(casts[1:].show(tmp_path / "part.html"))
-    assert numbers(part["hits"]["object"]).tolist() == casts.hits.object[casts.hits.of(1)].tolist()
+    assert numbers(part["moments"]["object"]).tolist() == casts.hits.object[casts.hits.of(1)].tolist()
 
 
 def test_what_is_far_from_the_origin_is_shown_where_it_is(tmp_path):

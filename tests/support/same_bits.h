@@ -41,6 +41,20 @@ inline std::string differenceOf(std::span<const Result> found, std::span<const R
   return words.str();
 }
 
+/// Likewise of the moments of a way that a query lists.
+inline std::string momentDifference(const Listed& found, const Listed& expected,
+                                    bool (*same)(const Result&, const Result&)) {
+  const std::optional<Closest>&closest = found.closest, &right = expected.closest;
+  if (closest.has_value() != right.has_value() || found.exit.has_value() != expected.exit.has_value()) {
+    return "; only one has a closest approach or an exit";
+  }
+  std::string words;
+  if (closest && (closest->lo != right->lo || closest->hi != right->hi)) words = "; another least distance";
+  if (closest) words += differenceOf({&closest->at, 1}, {&right->at, 1}, same);
+  if (found.exit) words += differenceOf({&*found.exit, 1}, {&*expected.exit, 1}, same);
+  return words;
+}
+
 /// The same with their lists.
 inline std::string differenceOf(const Answers& found, const Answers& expected,
                                 bool (*same)(const Result&, const Result&) = sameBits) {
@@ -49,6 +63,7 @@ inline std::string differenceOf(const Answers& found, const Answers& expected,
   for (size_t i = 0; words.empty() && i < found.lists.size(); ++i) {
     words = differenceOf(found.lists[i].hits, expected.lists[i].hits, same);
     if (found.lists[i].overlapping != expected.lists[i].overlapping) words += "; other objects overlap";
+    words += momentDifference(found.lists[i], expected.lists[i], same);
     if (!words.empty()) words = "list of query " + std::to_string(i) + ": " + words;
   }
   return words;

@@ -96,9 +96,9 @@ Real distanceAt(const Points<Real>& a, const Points<Real>& b, const Point<Real>&
   return distance(moved, b);
 }
 
-/// The least distance for 0 <= t <= end: it is convex in t.
+/// When the distance is least for 0 <= t <= end, and how much it is: it is convex in t.
 template <class Real>
-Real leastDistance(const Points<Real>& a, const Points<Real>& b, const Point<Real>& unit, const Real& end, int steps) {
+Real nearestTime(const Points<Real>& a, const Points<Real>& b, const Point<Real>& unit, const Real& end, int steps) {
   Real from = 0, to = end;
   for (int i = 0; i < steps; ++i) {
     const Real p = from + Real(0.382) * (to - from), q = from + Real(0.618) * (to - from);
@@ -108,7 +108,11 @@ Real leastDistance(const Points<Real>& a, const Points<Real>& b, const Point<Rea
       from = p;
     }
   }
-  return distanceAt(a, b, unit, Real(0.5 * (from + to)));
+  return Real(0.5 * (from + to));
+}
+template <class Real>
+Real leastDistance(const Points<Real>& a, const Points<Real>& b, const Point<Real>& unit, const Real& end, int steps) {
+  return distanceAt(a, b, unit, nearestTime(a, b, unit, end, steps));
 }
 
 /// How far the point of an answer is from the farther of its two triangles at the moment of contact, as a share of the

@@ -9,7 +9,7 @@ import { Renderer } from "../../tools/view/renderer.js";
 import { COLUMNS, Listing } from "../../tools/view/table.js";
 import { Stage } from "../../tools/view/stage.js";
 import { Camera, lengthOf, minus, plus, unit } from "../../tools/view/vectors.js";
-import { contactInWords, inWords } from "../../tools/view/words.js";
+import { momentInWords, inWords } from "../../tools/view/words.js";
 
 const NONE = 0xffffffff, TYPES = { u1: Uint8Array, u4: Uint32Array, f4: Float32Array, f8: Float64Array };
 const array = (type, values) => ({ [type]: Buffer.from(new TYPES[type](values).buffer).toString("base64") });
@@ -26,12 +26,12 @@ function answersOf(rows) {
   const places = Object.fromEntries(["point", "normal"].map((name) => [name, of("f8", name, [NaN, NaN, NaN])]));
   return { status: array("u1", rows.map(({ status }) => STATUSES.indexOf(status))), ...numbers, ...ids, ...places };
 }
-const firstOf = (rows) => rows.reduce((first, { hits = [] }) => [...first, first.at(-1) + hits.length], [0]);
+const firstOf = (rows) => rows.reduce((first, { moments = [] }) => [...first, first.at(-1) + moments.length], [0]);
 const STATUSES = ["hit", "clear", "overlap", "undecided", "invalid"];
 
 /**
  * What page.cpp writes of a scene of cubes of side 2 at x = 0, 10, 20, and sensors like them, which move 10 along x.
- * `mesh`: what else is said of the cube. `rows`: of each query its answer, what it lists, and what was asked: {..., hits, left,
+ * `mesh`: what else is said of the cube. `rows`: of each query its answer, what it lists, and what was asked: {..., moments, left,
  * ignored, id, at, asked, step, turn, move}.
  */
 function dataOf(rows, { chains = [], mesh = {} } = {}) {
@@ -50,7 +50,10 @@ function dataOf(rows, { chains = [], mesh = {} } = {}) {
   };
   return new Data(JSON.stringify({
     title: "", notes: [], tour: [], none: NONE, statuses: STATUSES, chains, scenes: [scene], queries, answers: answersOf(rows),
-    hits: { ...answersOf(rows.flatMap(({ hits = [] }) => hits)), first: array("u4", firstOf(rows)) },
+    moments: {
+      ...answersOf(rows.flatMap(({ moments = [] }) => moments)), first: array("u4", firstOf(rows)),
+      as: array("u1", rows.flatMap(({ moments = [] }) => moments.map(({ as = 0 }) => as))),
+    },
     meshes: [{ name: "cube", positions: array("f4", corners), indices: array("u4", [0, 1, 3, 4, 5, 7]), ...mesh }],
     left: by("left"), reasons: by("reasons"), others: by("others"), scopes: {},
   }));
@@ -252,17 +255,31 @@ test("buffers of meshes that another scene has not are freed", () => {
 test("contacts that a query lists are answers of their own, and filters find their objects", () => {
   const maybe = { status: "undecided", t: Infinity, lo: 8, hi: Infinity, object: 1 };
   const hits = [HIT, { ...HIT, t: 6, lo: 6, hi: 6, object: 2 }, maybe];
-  const data = dataOf([{ ...HIT, hits: [HIT] }, { ...HIT, hits }, CLEAR]), [one, several] = data.answers, look = new Look(data);
-  assert.deepEqual(one.contacts, []);
-  assert.deepEqual(several.contacts.map(contactInWords),
+  const data = dataOf([{ ...HIT, moments: [HIT] }, { ...HIT, moments: hits }, CLEAR]), [one, several] = data.answers, look = new Look(data);
+  assert.deepEqual(one.moments, []);
+  assert.deepEqual(several.moments.map(momentInWords),
     ["3: object 0 (cube)", "6: object 2 (cube)", "not before 8, if at all: object 1 (lid)"]);
-  assert.match(inWords(several.contacts[1])[0], /^Touches object 2 \(cube\) after 6, if nothing stops it before\.$/);
+  assert.match(inWords(several.moments[1])[0], /^Touches object 2 \(cube\) after 6, if nothing stops it before\.$/);
   const listing = new Listing(data);
   listing.filter({ object: "2" });
   assert.deepEqual(listing.rows, [1]);
   assert.deepEqual(data.answers.map(COLUMNS.find(({ name }) => name === "object").text), ["0", "0 + 2", ""]);
   Object.assign(look, { chosen: 1, contact: 1 });
   assert.deepEqual([look.gone(1), look.gone(0), look.answer.object], [0.6, 0.3, 2]);
+});
+
+test("the closest approach and the last contact are moments of the way", () => {
+  const near = { ...HIT, t: 4, lo: 4, hi: 4, gap: 2.5, object: 1, as: 1 }, out = { ...HIT, t: 7, lo: 7, hi: 7, as: 2 };
+  const stuck = { ...out, t: 10, lo: 10, hi: 10 };
+  const data = dataOf([{ ...CLEAR, moments: [near] }, { ...HIT, moments: [HIT, out] }, { ...HIT, moments: [stuck] }]);
+  const [[closest], exits, [still]] = data.answers.map(({ moments }) => moments);
+  assert.deepEqual([closest, ...exits, still].map(momentInWords),
+    ["4: nearest, object 1 (lid)", "7: out of all, object 0 (cube)", "10: out of all, object 0 (cube)"]);
+  assert.equal(inWords(closest)[0], "Comes nearest to object 1 (lid) after 4.");
+  assert.match(inWords(closest)[1], /^The gap is then 2\.5 long/);
+  assert.equal(inWords(exits[0])[0], "Is out of everything after 7; the last contact is with object 0 (cube).");
+  assert.equal(inWords(still)[0], "Is still in contact with object 0 (cube) at the end of its way.");
+  assert.equal(closest.share, 0.4);
 });
 
 test("words say what was asked: to touch, to come near, or to block", () => {

@@ -31,9 +31,9 @@ TEST_CASE("a page shows the lists of the first queries, and keeps the objects in
   std::vector<Result> contacts(60'000, Result(Status::hit));
   for (uint32_t i = 0; i < contacts.size(); ++i) contacts[i].object = 100'009;
   PageContent content;
-  for (const uint32_t query : {0u, 2u}) content.hits[query] = contacts;
+  for (const uint32_t query : {0u, 2u}) content.moments[query] = contacts;
   const nlohmann::json data = test::pageData(pageOf(workload, answers, content));
-  CHECK(data["hits"]["first"] == nlohmann::json({{"u4", "AAAAAGDqAABg6gAAYOoAAA=="}}));  // 0, and three times 60,000
+  CHECK(data["moments"]["first"] == nlohmann::json({{"u4", "AAAAAGDqAABg6gAAYOoAAA=="}}));  // 0, and three times 60,000
   CHECK(data["notes"][0] == "Lists of contacts are those of the first 2 queries.");
   const std::string numbers = data["scenes"][0]["number"]["u4"];
   CHECK(numbers.ends_with("qYYBAA=="));  // 100,009

@@ -505,7 +505,7 @@ def test_all_contacts_that_a_query_lists_are_shown(browser, tmp_path):
     assert view.run("return document.activeElement.ariaPressed") == "true"
     view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
     assert is_like(view.colour_at((18 + 0.5, -1, 0.6)), "hit")
-    assert "listed contacts" in legend(view)
+    assert "listed moments" in legend(view)
     view.choose(1)
     assert view.browser.find_elements(By.CSS_SELECTOR, "#chosen li") == []
     assert view.errors() == []

@@ -1,6 +1,9 @@
 #include "batch/answer_file.h"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <string_view>
 
 #include "batch/json_output.h"
 
@@ -56,14 +59,33 @@ AnswerRow rowOf(const QuerySpec& query, const Answer& answer, uint64_t index = 0
           query.speed, index,         query.chain ? std::optional(answer.links) : std::nullopt};
 }
 
-std::string hitText(const QuerySpec& query, const Result& hit, const AnswerNames& names) {
+/// Adds the members of a contact in a list, without those that are named.
+void addHit(JsonObject& object, const QuerySpec& query, const Result& hit, const AnswerNames& names,
+            std::initializer_list<std::string_view> without = {}) {
   const AnswerRow row(query, hit, AnswerMode::contact);
   const AnswerField* const first = findAnswerField("object");
-  JsonObject object;
   add(object, *first, row, names);
   for (const AnswerField& field : answerFields()) {
-    if (&field != first && has(row, field.hit)) add(object, field, row, names);
+    if (&field == first || !has(row, field.hit) || std::ranges::find(without, field.name) != without.end()) continue;
+    add(object, field, row, names);
   }
+}
+
+std::string hitText(const QuerySpec& query, const Result& hit, const AnswerNames& names) {
+  JsonObject object;
+  addHit(object, query, hit, names);
+  return object.text();
+}
+
+std::string closestText(const QuerySpec& query, const Closest& closest, const AnswerNames& names) {
+  if (closest.at.object == kNone) return "null";
+  JsonObject object;
+  object.addNumber("distance_lo", closest.lo);
+  object.addNumber("distance_hi", closest.hi);
+  // Where it is has no bracket, and its gap lies between these two.
+  addHit(object, query, closest.at, names, {"lo", "hi", "fraction_lo", "fraction_hi", "gap", "sensor_point"});
+  const AnswerRow row(query, closest.at, AnswerMode::contact);
+  add(object, *findAnswerField("sensor_point"), row, names);
   return object.text();
 }
 
@@ -128,6 +150,12 @@ std::string answerLine(const QuerySpec& query, const Answer& answer, const Answe
                  text += objectNames[id].empty() ? "null" : quoted(objectNames[id]);
                }));
     }
+  }
+  const Listed& listed = answer.listed;
+  if (query.closest) line.add("closest", listed.closest ? closestText(query, *listed.closest, names) : "null");
+  if (query.exit) {
+    const bool isTouched = listed.exit && listed.exit->status != Status::clear;
+    line.add("exit", isTouched ? hitText(query, *listed.exit, names) : "null");
   }
   return line.text();
 }

@@ -115,6 +115,22 @@ std::vector<Answer> readLines(const std::string& file, std::string_view text, co
         answer.listed.hits.push_back(contactOf(membersOf(hit, file, at, query), workload));
       });
     });
+    const auto momentOf = [&](const char* name, const auto& use) {
+      root.ifHas(name, [&](const JsonValue& moment) {
+        if (!moment.json().is_null()) use(moment, membersOf(moment, file, place + ": " + name, query));
+      });
+    };
+    momentOf("closest", [&](const JsonValue& closest, const RowReader& row) {
+      LinksMet none;
+      answer.listed.closest = Closest{closest.member("distance_lo").number(), closest.member("distance_hi").number(),
+                                      resultOf(row, workload, Status::hit, none)};
+      answer.listed.closest->at.gap = answer.listed.closest->hi;
+    });
+    momentOf("exit", [&](const JsonValue&, const RowReader& row) {
+      const bool isOpen = std::isnan(row.number(*findAnswerField("t"), 0));
+      LinksMet none;
+      answer.listed.exit = resultOf(row, workload, isOpen ? Status::undecided : Status::hit, none);
+    });
     root.ifHas("overlapping", [&](const JsonValue& list) {
       const size_t objects = workload.objectCount(query.scene);
       list.forEach(

@@ -91,7 +91,7 @@ void writePage(const std::filesystem::path& file, const std::string& title, cons
   content.left = leftOutOf(answers);
   for (uint32_t i = 0; i < answers.size(); ++i) {
     if (!answers[i].reason.empty()) content.reasons[i] = answers[i].reason;
-    if (!answers[i].listed.hits.empty()) content.hits[i] = answers[i].listed.hits;
+    if (auto moments = momentsOf(answers[i].listed); !moments.empty()) content.moments[i] = std::move(moments);
     if (!workload.chains.empty()) content.links.push_back(answers[i].links);
   }
   addSampled(content, workload, answers, options);

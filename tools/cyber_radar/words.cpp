@@ -60,6 +60,19 @@ std::string listsInWords(const Workload& workload, const QuerySpec& query, const
     text += "  without " + objectInWords(workload, query.scene, object) +
             ", whose surface crosses the sensor's at the start\n";
   }
+  if (listed.closest && listed.closest->at.object != kNone) {
+    const Closest& closest = *listed.closest;
+    text += "  nearest " + inDigits(closest.hi) + " to " + objectInWords(workload, query.scene, closest.at.object) +
+            ", after " + timeInWords(query, closest.at.t) + "\n";
+  }
+  if (listed.exit && listed.exit->status != Status::clear) {
+    const Result& exit = *listed.exit;
+    const double end = takesStep(query) ? 1 : query.distance;
+    text += "  out of  " + objectInWords(workload, query.scene, exit.object) +
+            (exit.lo == end                     ? " not within the motion\n"
+             : exit.status == Status::undecided ? " after " + timeInWords(query, exit.hi) + ", if ever in it\n"
+                                                : ", and of all others, after " + timeInWords(query, exit.hi) + "\n");
+  }
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include "measure/timing.h"
 #include "radar/cpu_sweeper.h"
 #include "workloads/drop_cutter.h"
+#include "workloads/generate.h"
 #include "workloads/random.h"
 #include "workloads/shapes.h"
 
@@ -114,12 +115,34 @@ void flyPast(const std::string& name, const MeshData& mesh, Extent extent, Json&
   }
 }
 
+/// Table 1's sensors: their first contact, and the closest approach and the last contact beside it.
+void askWholeWay(const std::string& name, SensorShape shape, Extent extent, Json& report) {
+  const bool isFull = extent == Extent::full;
+  const Workload workload =
+      makeWorkload(Table1{.boxes = isFull ? 30'000u : 300u, .sensors = isFull ? 3'000u : 16u, .shape = shape});
+  Scene scene;
+  replaceBy(workload, 0, scene);
+  std::vector<Query> queries = queriesOf(workload.queries);
+  const auto askAll = [&](const char* what, bool closest, bool exit) {
+    for (Query& query : queries) {
+      query.closest = closest;
+      query.exit = exit;
+    }
+    ask(name + what, scene, queries, report);
+  };
+  askAll("", false, false);
+  askAll(", with closest", true, false);
+  askAll(", with exit", false, true);
+}
+
 }  // namespace
 
 void measureClearances(Extent extent, Json& report) {
   dropCutters(extent, report);
   flyPast("teapots", makeTeapot(), extent, report);
   flyPast("rings", makeTorus(1, 0.4, 60, 30), extent, report);
+  askWholeWay("Table 1's boxes", SensorShape::box, extent, report);
+  askWholeWay("Table 1's teapots", SensorShape::teapot, extent, report);
   partOf(report, "clearances")["state"] = "done";
 }
 

@@ -164,10 +164,19 @@ void answer(CastingScene& scene, const std::vector<Query>& queries, Answers& all
 
 void append(BatchLists& to, const Listed& listed, const Query& query) {
   const tools::AnswerLayout& layout = tools::castsLayout(false);
-  for (const Result& hit : listed.hits) {
-    to.hits.resize(to.hits.size() + layout.size);
-    layout.write({query, hit, AnswerMode::contact}, &to.hits[to.hits.size() - layout.size]);
+  const auto appendRecord = [&](std::string& records, const Result& result) {
+    records.resize(records.size() + layout.size);
+    layout.write({query, result, AnswerMode::contact}, &records[records.size() - layout.size]);
+  };
+  for (const Result& hit : listed.hits) appendRecord(to.hits, hit);
+  if (query.closest) {
+    // An invalid query has no lists.
+    const Closest closest = listed.closest.value_or(Closest{NAN, NAN, Result()});
+    to.distanceLo.push_back(closest.lo);
+    to.distanceHi.push_back(closest.hi);
+    appendRecord(to.closest, closest.at);
   }
+  if (query.exit) appendRecord(to.exits, listed.exit.value_or(Result()));
   to.hitOffsets.push_back(static_cast<int64_t>(to.hits.size() / layout.size));
   to.overlapping.insert(to.overlapping.end(), listed.overlapping.begin(), listed.overlapping.end());
   to.overlappingOffsets.push_back(static_cast<int64_t>(to.overlapping.size()));

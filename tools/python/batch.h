@@ -38,11 +38,14 @@ struct BatchInput {
   size_t count() const;
 };
 
-/// What the answers of a batch list: nothing unless the queries ask for several hits or skip what overlaps.
+/// What the answers of a batch list: nothing unless the queries ask for it.
 struct BatchLists {
   /// Those of query i are entries hitOffsets[i] to hitOffsets[i + 1] of `hits`, records; likewise what overlaps.
   std::string hits;
   std::vector<int64_t> hitOffsets{0}, overlapping, overlappingOffsets{0};
+  /// Of each query: the least distance's bracket, and records of where it is and of the last contact.
+  std::vector<double> distanceLo{}, distanceHi{};
+  std::string closest{}, exits{};
   std::map<std::string, std::vector<int64_t>> reasons;  ///< why queries are invalid, and which
 };
 

@@ -87,8 +87,16 @@ tools::QuerySpec optionsFrom(const py::dict& options) {
 }
 
 /// What _engine.pyi says of cast().
-py::tuple listsFor(const Query& options, const BatchLists& found) {
-  py::object hits = py::none(), overlapping = py::none();
+py::tuple listsFor(const Query& options, const std::vector<size_t>& shape, const BatchLists& found) {
+  py::object hits = py::none(), overlapping = py::none(), closest = py::none(), exits = py::none();
+  const auto recordsOf = [&](const std::string& records) {
+    return py::array(py::dtype::from_args(typeOf(tools::castsLayout(false))), shape, records.data());
+  };
+  if (options.closest) {
+    const std::vector<py::ssize_t> own(shape.begin(), shape.end());
+    closest = py::make_tuple(recordsOf(found.closest), arrayOf(found.distanceLo, own), arrayOf(found.distanceHi, own));
+  }
+  if (options.exit) exits = recordsOf(found.exits);
   const auto whole = [](const std::vector<int64_t>& values) { return arrayOf(values, {py::ssize_t(values.size())}); };
   if (options.hits > 1) {
     const py::array records(py::dtype::from_args(typeOf(tools::castsLayout(false))), {found.hitOffsets.back()},
@@ -102,7 +110,7 @@ py::tuple listsFor(const Query& options, const BatchLists& found) {
   for (const auto& [reason, which] : found.reasons) {
     reasons[py::str(reason)] = arrayOf(which, {py::ssize_t(which.size())});
   }
-  return py::make_tuple(hits, overlapping, reasons);
+  return py::make_tuple(hits, overlapping, closest, exits, reasons);
 }
 
 py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, const py::dict& arguments,
@@ -148,7 +156,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
       if (!afterChunk.is_none()) afterChunk(done);
     });
   }
-  return listsFor(input.options, found);
+  return listsFor(input.options, shape, found);
 }
 
 // ------------------------------------------------------------------------------------------------- devices and files

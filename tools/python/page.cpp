@@ -42,7 +42,8 @@ Workload workloadOf(const BasedScene& based, const std::map<uint32_t, std::strin
 std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
                       const std::string& title, uint64_t count, const std::vector<std::string>& names,
                       const py::dict& arrays, const py::array& records, const std::map<uint32_t, std::string>& reasons,
-                      const tools::LeftOut& left, const std::optional<std::pair<py::array, Array<int64_t>>>& hits) {
+                      const tools::LeftOut& left, const std::optional<std::pair<py::array, Array<int64_t>>>& hits,
+                      const std::optional<py::array>& closest, const std::optional<py::array>& exits) {
   const size_t shown = names.size();
   const auto* const meshes = numbers<uint32_t>(arrays, "mesh", shown);
   const auto *const poses = numbers<double>(arrays, "poses", 16 * shown),
@@ -83,10 +84,14 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
       if (const int64_t object = excluded.at(i, k); object >= 0) query.exclude.push_back(static_cast<ObjectId>(object));
     }
     results.push_back(layout.read(answers + layout.size * i));
-    if (!hits) continue;
-    const Array<int64_t>& offsets = hits->second;
-    for (auto k = static_cast<size_t>(offsets.at(i)); k < static_cast<size_t>(offsets.at(i + 1)); ++k) {
-      content.hits[static_cast<uint32_t>(i)].push_back(ofHits.read(listed + ofHits.size * k));
+    Listed own;
+    for (int64_t k = hits ? hits->second.at(i) : 0; k < (hits ? hits->second.at(i + 1) : 0); ++k) {
+      own.hits.push_back(ofHits.read(listed + ofHits.size * static_cast<size_t>(k)));
+    }
+    if (closest) own.closest = Closest{0, 0, ofHits.read(recordsOf(*closest, ofHits, shown) + ofHits.size * i)};
+    if (exits) own.exit = ofHits.read(recordsOf(*exits, ofHits, shown) + ofHits.size * i);
+    if (auto moments = tools::momentsOf(own); !moments.empty()) {
+      content.moments[static_cast<uint32_t>(i)] = std::move(moments);
     }
   }
   return tools::pageOf(workload, results, content);

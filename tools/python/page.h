@@ -20,6 +20,7 @@ tools::Workload workloadOf(const BasedScene& based, const std::map<uint32_t, std
 std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
                       const std::string& title, uint64_t count, const std::vector<std::string>& names,
                       const py::dict& arrays, const py::array& records, const std::map<uint32_t, std::string>& reasons,
-                      const tools::LeftOut& left, const std::optional<std::pair<py::array, Array<int64_t>>>& hits);
+                      const tools::LeftOut& left, const std::optional<std::pair<py::array, Array<int64_t>>>& hits,
+                      const std::optional<py::array>& closest, const std::optional<py::array>& exits);
 
 }  // namespace radar::python

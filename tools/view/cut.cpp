@@ -12,14 +12,27 @@ constexpr uint32_t kMostObjects = 100'000, kMostTriangles = 3'000'000, kMostList
 
 }  // namespace
 
+std::vector<ListedMoment> momentsOf(const Listed& listed) {
+  std::vector<ListedMoment> moments;
+  for (const Result& hit : listed.hits) moments.push_back({hit});
+  if (listed.closest && listed.closest->at.object != kNone) {
+    moments.push_back({listed.closest->at, ListedMoment::As::closest});
+    // A page shows where it is.
+    Status& status = moments.back().result.status;
+    if (status == Status::clear) status = Status::hit;
+  }
+  if (listed.exit && listed.exit->object != kNone) moments.push_back({*listed.exit, ListedMoment::As::exit});
+  return moments;
+}
+
 Cut::Cut(const Workload& workload, std::span<const Result> answers, const LeftOut& left, uint64_t all,
-         const ListedHits& hits)
+         const ListedMoments& moments)
     : workload_(workload) {
   queries_ = listing_ = std::min<size_t>(workload.queries.size(), kMostShownQueries);
   if (queries_ < all) note("The first " + std::to_string(queries_) + " of " + std::to_string(all) + " queries.");
   size_t listed = 0;
-  for (const auto& [query, contacts] : hits) {
-    listed += contacts.size();
+  for (const auto& [query, own] : moments) {
+    listed += own.size();
     if (listed > kMostListed) listing_ = std::min<size_t>(listing_, query);
   }
   if (listing_ < queries_) note("Lists of contacts are those of the first " + std::to_string(listing_) + " queries.");
@@ -31,8 +44,8 @@ Cut::Cut(const Workload& workload, std::span<const Result> answers, const LeftOu
       if (const auto found = left.find(i); found != left.end()) {
         touched_[part].insert(found->second.begin(), found->second.end());
       }
-      if (const auto found = hits.find(i); found != hits.end() && i < listing_) {
-        for (const Result& hit : found->second) touched_[part].insert(hit.object);
+      if (const auto found = moments.find(i); found != moments.end() && i < listing_) {
+        for (const ListedMoment& moment : found->second) touched_[part].insert(moment.result.object);
       }
     }
   }

@@ -14,8 +14,16 @@ namespace radar::tools {
 /// By query: the objects that skipOverlapping left out, ascending; only of queries that left some out.
 using LeftOut = std::map<uint32_t, std::vector<uint32_t>>;
 
-/// By query: the first contacts that it lists (Query::hits), only of queries that list some.
-using ListedHits = std::map<uint32_t, std::vector<Result>>;
+/// A moment of its way that a query lists.
+struct ListedMoment {
+  enum class As : uint8_t { contact, closest, exit };
+  Result result;
+  As as = As::contact;
+};
+/// By query; only of queries that list some.
+using ListedMoments = std::map<uint32_t, std::vector<ListedMoment>>;
+/// Those of an answer that have an object.
+std::vector<ListedMoment> momentsOf(const Listed& listed);
 
 /// No picture has more; the first are shown.
 inline constexpr uint32_t kMostShownQueries = 10'000;
@@ -25,7 +33,7 @@ class Cut {
  public:
   /// An answer for each query of the workload. `all`: how many queries there are.
   Cut(const Workload& workload, std::span<const Result> answers, const LeftOut& left, uint64_t all,
-      const ListedHits& hits = {});
+      const ListedMoments& moments = {});
 
   /// The largest meshes become boxes until the others have no more than three million triangles.
   void boxMeshes();

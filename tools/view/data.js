@@ -22,7 +22,7 @@ import { between, lengthOf, minus, plus, times, turned } from "./vectors.js";
  *   L: Float32Array, origin: number[], right: number[], up: number[], forward: number[]}} Scopes
  * @typedef {{title: string, notes: string[], tour: {query?: number, play?: string}[], none: number, statuses: string[],
  *   meshes: object[], chains: import("./chains.js").Chain[], scenes: SceneRow[], queries: Queries, answers: Answers,
- *   hits: Answers & {first: Uint32Array}, left: Record<number, number[]>,
+ *   moments: Answers & {first: Uint32Array, as: Uint8Array}, left: Record<number, number[]>,
  *   reasons: Record<number, string>, others: Record<number, {words: string, t: ?number, object: number}>,
  *   scopes: Record<number, Scopes>}} Written
  */
@@ -51,7 +51,7 @@ function joined(first, second) {
   return all;
 }
 
-/** An answer to a query, or a contact that it lists. Ids are Data.none, numbers NaN, where there is none. */
+/** An answer to a query, or a moment of its way that it lists. Ids are Data.none, numbers NaN, where there is none. */
 export class Answer {
   /**
    * @param {Data} data
@@ -65,6 +65,8 @@ export class Answer {
     this.data = data;
     this.query = query;
     this.isListed = isListed;
+    /** Of what is listed: a contact, the closest approach, or the last contact. */
+    this.as = isListed ? ["contact", "closest", "exit"][from.as[i]] : "";
     /** @type {?Answer[]} */
     this.list = null;
     this.status = data.statuses[from.status[i]];
@@ -82,7 +84,7 @@ export class Answer {
     this.hasPoint = this.point.every(Number.isFinite);
     this.hasNormal = this.normal.every(Number.isFinite);
     /** Whether only that is known. */
-    this.saysOnlyWhether = this.status === "hit" && asked.any_hit === true;
+    this.saysOnlyWhether = this.status === "hit" && asked.any_hit === true && !isListed;
     /** When it touches something; NaN if it is not known. */
     this.time = Number.isFinite(this.t) && !this.saysOnlyWhether && this.status !== "undecided" ? this.t : NaN;
     const { isRound, radius } = data.sensors.meshOf(query);
@@ -91,7 +93,7 @@ export class Answer {
     /** Counts only what blocks. */
     this.leaves = asked.ignore_leaving === true;
     /** The distance of the surfaces then; NaN if it is not known. */
-    this.gap = this.clearance > 0 && !this.saysOnlyWhether ? from.gap[i] - (isRound ? radius : 0) : 0;
+    this.gap = this.as === "closest" || (this.clearance > 0 && !this.saysOnlyWhether) ? from.gap[i] - (isRound ? radius : 0) : 0;
     /** Of its bracket; NaN if it says nothing. */
     this.width = this.saysOnlyWhether ? NaN : this.hi - this.lo;
   }
@@ -118,11 +120,16 @@ export class Answer {
     const other = this.data.others[this.query];
     return other && other.t !== null ? this.data.fractionOf(this.query, other.t) : null;
   }
-  /** The first contacts with the nearest objects, if the query lists several. @returns {Answer[]} */
-  get contacts() {
-    const { data, query } = this, { hits } = data, begin = hits.first[query], count = hits.first[query + 1] - begin;
-    const contact = (_, i) => new Answer(data, query, hits, begin + i, true);
-    return (this.list ??= count < 2 ? [] : Array.from({ length: count }, contact));
+  /** The moments that the query lists: the first contacts with several objects, the closest approach, the last contact. */
+  get moments() {
+    return (this.list ??= this.listed());
+  }
+  /** @returns {Answer[]} */
+  listed() {
+    const { data, query } = this, { moments } = data, begin = moments.first[query], count = moments.first[query + 1] - begin;
+    const all = Array.from({ length: count }, (_, i) => new Answer(data, query, moments, begin + i, true));
+    // One contact is the answer itself.
+    return all.filter(({ as }) => as === "contact").length > 1 ? all : all.filter(({ as }) => as !== "contact");
   }
   /** The object touched, by this answer or by another mode's. */
   get touched() {
@@ -144,7 +151,7 @@ export class Data {
     this.chains = written.chains.map((chain) => ({ ...chain, bodies: bodiesOf(chain) }));
     this.scenes = written.scenes;
     this.queries = written.queries;
-    this.hits = written.hits;
+    this.moments = written.moments;
     this.left = written.left;
     this.reasons = written.reasons;
     this.others = written.others;

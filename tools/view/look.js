@@ -7,7 +7,7 @@ import { inDigits } from "./words.js";
 
 /** @typedef {import("./data.js").Answer} Answer */
 
-// Of contacts in a list.
+// Of moments in a list.
 const MOST_LABELS = 20;
 
 /** A way of looking at the answers: which queries, how far along their ways, and what is chosen. */
@@ -18,7 +18,7 @@ export class Look {
     this.scene = data.queries.count ? data.queries.scene[0] : 0;
     /** A query; -1: none. */
     this.chosen = -1;
-    /** Which of the contacts that it lists is looked at; -1: its answer. */
+    /** Which of the moments that it lists is looked at; -1: its answer. */
     this.contact = -1;
     /** Where it is in the scene; -1: none. */
     this.object = -1;
@@ -32,7 +32,7 @@ export class Look {
   /** What is looked at of a query: its answer, or of the chosen one a contact that it lists; undefined of no query. */
   answerTo(query) {
     const answer = this.data.answers[query];
-    return query === this.chosen && this.contact >= 0 ? answer.contacts[this.contact] : answer;
+    return query === this.chosen && this.contact >= 0 ? answer.moments[this.contact] : answer;
   }
   get answer() {
     return this.answerTo(this.chosen);
@@ -80,7 +80,7 @@ export class Look {
     const { data, chosen } = this, { objects, numbers, place: places, ways } = data.scene(this.scene);
     const passed = this.passed(), rest = [0, 0, 0], touched = places.get(this.answer?.touched);
     const ignored = new Set(data.queries.ignored[chosen]), left = new Set(data.left[chosen]);
-    const rank = new Map((data.answers[chosen]?.contacts ?? []).map(({ object }, i) => [object, i + 1]));
+    const rank = new Map((data.answers[chosen]?.moments ?? []).map(({ object }, i) => [object, i + 1]));
     for (let i = 0; i < objects.count; ++i) {
       if (moving.has(i)) continue;
       const number = numbers[i], isLeft = left.has(number), isTouched = i === touched || i === this.object;
@@ -138,7 +138,7 @@ export class Look {
       const across = times(0.25 * sensors.radius[chosen], unit(cross(data.heading(chosen, part), stage.forward)));
       stage.line(minus(tick, across), plus(tick, across), COLOURS.path, 2);
     }
-    for (const contact of data.answers[chosen].contacts) stage.mark(at(contact.share), COLOURS.listed, 9, "ring");
+    for (const contact of data.answers[chosen].moments) stage.mark(at(contact.share), COLOURS.listed, 9, "ring");
     this.explainContact(stage, answer);
     if (other !== null && Math.abs(other - share) > 1e-3) {
       const [{ placed, i, moved }] = data.bodiesAt(chosen, other);

@@ -12,7 +12,7 @@ import { drawScopes } from "./scopes.js";
 import { BOX, Stage, TRIANGLE } from "./stage.js";
 import { Table } from "./table.js";
 import { Camera, between } from "./vectors.js";
-import { contactInWords, inWords, kindInWords, sizeInWords } from "./words.js";
+import { momentInWords, inWords, kindInWords, sizeInWords } from "./words.js";
 
 class Page {
   /** @param {string} text */
@@ -109,7 +109,7 @@ class Page {
   flyTo(query) {
     const { data } = this;
     const bounds = new Bounds(), { objects, place } = data.scene(data.queries.scene[query]), answer = this.look.answerTo(query);
-    const listed = answer.isListed ? [] : answer.contacts;
+    const listed = answer.isListed ? [] : answer.moments;
     const farthest = Math.max(answer.share, answer.otherShare ?? 0, ...listed.map((contact) => contact.share));
     for (const { place, radius } of data.swept(query, farthest)) bounds.add(place, radius);
     // What it meets, or what was left out, if it is not much larger.
@@ -208,22 +208,22 @@ class Page {
     const { kind } = look.answer, head = made(place, "h2", kind, `${SYMBOLS[kind]} ${data.queries.id[query]}`);
     head.title = kindInWords(kind);
     for (const line of inWords(look.answer)) made(place, "p", "", line);
-    const { contacts } = data.answers[query];
-    if (contacts.length) this.describeContacts(place, contacts);
+    const { moments } = data.answers[query];
+    if (moments.length) this.describeMoments(place, moments);
     if (data.scopes[query]) drawScopes(place, data.scopes[query]);
   }
-  /** Buttons that show the contacts that a query lists. */
-  describeContacts(place, contacts) {
-    made(place, "p", "", "First contacts, one with each object:");
-    const list = made(place, "ol"), shown = this.look.answer.object;
-    contacts.forEach((contact, i) => {
-      const button = made(made(list, "li"), "button", contact.status, contactInWords(contact));
-      button.ariaPressed = `${contact.object === shown}`;
+  /** Buttons that show the moments that a query lists. */
+  describeMoments(place, moments) {
+    made(place, "p", "", moments[0].as === "contact" ? "First contacts, one with each object:" : "On its way:");
+    const list = made(place, "ol"), { as, object } = this.look.answer;
+    moments.forEach((moment, i) => {
+      const button = made(made(list, "li"), "button", moment.status, momentInWords(moment));
+      button.ariaPressed = `${moment.object === object && moment.as === (as || "contact")}`;
       button.onclick = () => {
         this.change({ contact: i });
         this.describe();
         place.querySelectorAll("button")[i].focus();
-        this.flyTo(contact.query);
+        this.flyTo(moment.query);
       };
     });
   }

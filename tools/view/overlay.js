@@ -60,7 +60,7 @@ export class Overlay {
     const { gap } = answer;
     if (data.left[answer.query]) entries.push([COLOURS.part, "◇", "left out: crosses at the start"]);
     if (answer.object !== data.none) entries.push([COLOURS.touched, "■", gap === 0 ? "touched" : "the nearest object"]);
-    if (data.answers[answer.query].contacts.length) entries.push([COLOURS.listed, "■", "listed contacts (hits)"]);
+    if (data.answers[answer.query].moments.length) entries.push([COLOURS.listed, "■", "listed moments"]);
     const triangles = gap === 0 ? "triangles that meet" : "the nearest triangles";
     if (answer.triA !== data.none) entries.push([[0.85, 0.7, 0], "▲", triangles]);
     if (answer.hasPoint) entries.push([[0, 0, 0], "●", gap === 0 ? "point of contact" : "nearest point"]);

@@ -241,18 +241,25 @@ Json answersJson(std::span<const Result> answers, std::span<const LinksMet> link
   return json;
 }
 
-/// The contacts in lists, one after the other; "first": where those of each query begin, and at last their number.
-Json hitsJson(const ListedHits& lists, size_t queries, size_t listing) {
+/// The moments in lists, one after the other; "first": where those of each query begin, and at last their number; "as":
+/// what each is.
+Json momentsJson(const ListedMoments& lists, size_t queries, size_t listing) {
   std::vector<Result> all;
   std::vector<uint32_t> first;
+  std::vector<uint8_t> as;
   for (uint32_t i = 0; i < queries; ++i) {
     first.push_back(static_cast<uint32_t>(all.size()));
     const auto found = lists.find(i);
-    if (i < listing && found != lists.end()) all.insert(all.end(), found->second.begin(), found->second.end());
+    if (i >= listing || found == lists.end()) continue;
+    for (const ListedMoment& moment : found->second) {
+      all.push_back(moment.result);
+      as.push_back(static_cast<uint8_t>(moment.as));
+    }
   }
   first.push_back(static_cast<uint32_t>(all.size()));
   Json json = answersJson(all);
   json["first"] = array(first);
+  json["as"] = array(as);
   return json;
 }
 
@@ -280,7 +287,8 @@ Json byQuery(const std::map<uint32_t, Value>& entries, size_t queries, const Mak
 }  // namespace
 
 std::string pageOf(const Workload& workload, std::span<const Result> answers, const PageContent& content) {
-  Cut cut(workload, answers, content.left, std::max<uint64_t>(content.queries, workload.queries.size()), content.hits);
+  Cut cut(workload, answers, content.left, std::max<uint64_t>(content.queries, workload.queries.size()),
+          content.moments);
   cut.boxMeshes();
   const size_t count = cut.queries();
   const auto asItIs = [](const std::string& text) { return text; };
@@ -304,7 +312,7 @@ std::string pageOf(const Workload& workload, std::span<const Result> answers, co
   for (uint32_t i = 0; i < workload.scenes.size(); ++i) json["scenes"].push_back(sceneJson(workload, i, cut));
   json["queries"] = queriesJson(workload, queries, round);
   json["answers"] = answersJson(answers.first(count), content.links);
-  json["hits"] = hitsJson(content.hits, count, cut.listing());
+  json["moments"] = momentsJson(content.moments, count, cut.listing());
   json["left"] = byQuery(content.left, count, [](const std::vector<uint32_t>& objects) { return objects; });
   json["reasons"] = byQuery(content.reasons, count, asItIs);
   json["others"] = byQuery(content.others, count, otherJson);

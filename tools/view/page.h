@@ -23,7 +23,7 @@ struct PageContent {
   uint64_t queries = 0;                     ///< how many there are, if the workload has only the first of them
   std::map<uint32_t, std::string> reasons;  ///< by query: why it is invalid
   LeftOut left;
-  ListedHits hits;
+  ListedMoments moments;
   std::vector<LinksMet> links;             ///< of each query, if there are chains
   std::map<uint32_t, OtherAnswer> others;  ///< by query
   std::map<uint32_t, Scopes> scopes;       ///< by query

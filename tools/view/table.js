@@ -24,9 +24,9 @@ export const COLUMNS = [
   { name: "hi − lo", isNumber: true, value: ({ width }) => width, text: ({ width }) => inDigits(width, 2) },
   {
     name: "object", isNumber: true, value: ({ object }) => object,
-    text: ({ data, query, object, otherBody, contacts }) => {
+    text: ({ data, query, object, otherBody, moments }) => {
       if (object === data.none) return data.linkName(query, otherBody);
-      const name = data.nameOf(data.queries.scene[query], object), others = contacts.length - 1;
+      const name = data.nameOf(data.queries.scene[query], object), others = moments.filter(({ as }) => as === "contact").length - 1;
       return `${object}${name ? ` (${name})` : ""}${others > 0 ? ` + ${others}` : ""}`;
     },
   },
@@ -58,7 +58,7 @@ export class Listing {
     this.rows = this.answers.filter((answer) =>
       (kinds.size === 0 || kinds.has(answer.kind)) &&
       (part === "" || answer.data.queries.id[answer.query].toLowerCase().includes(part)) &&
-      (number === "" || [answer, ...answer.contacts].some(({ object }) => `${object}` === number))).map(({ query }) => query);
+      (number === "" || [answer, ...answer.moments].some(({ object }) => `${object}` === number))).map(({ query }) => query);
   }
 
   /** By a column; again: the other way round. */

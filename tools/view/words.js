@@ -70,13 +70,24 @@ function answerInWords(/** @type {Answer} */ answer) {
     within: step ? "during the step" : `within ${precisely(queries.whole[query])}`,
     other: data.left[query] ? " else" : "",
   });
+  if (answer.as === "closest") {
+    return answer.gap > 0 ? `Comes nearest to ${data.called(queries.scene[query], object)} after ${step ? `${time} of the step` : time}.`
+      : "Its surface meets another on its way: it comes no nearer.";
+  }
+  if (answer.as === "exit") {
+    const isStuck = answer.lo === queries.whole[query];
+    return isStuck ? `Is still in contact with ${data.called(queries.scene[query], object)} at the end of its way.`
+      : `Is out of everything after ${step ? `${time} of the step` : time}; the last contact is with ${data.called(queries.scene[query], object)}.`;
+  }
   if (!answer.saysOnlyWhether) return sentences[status === "hit" && answer.isListed ? "listed" : status] ?? "Not answered.";
   return `${sentences.whether} Asked was only whether (any_hit): not what or when; at the start counts, too.`;
 }
 
-/** A contact in a list: "0.5: object 3 (lid)". */
-export function contactInWords(/** @type {Answer} */ { data, query, object, status, t, lo }) {
-  const name = data.called(data.queries.scene[query], object);
+const KINDS_OF_MOMENTS = { contact: "", closest: "nearest, ", exit: "out of all, " };
+
+/** A moment in a list: "0.5: object 3 (lid)". */
+export function momentInWords(/** @type {Answer} */ { data, query, object, status, t, lo, as }) {
+  const name = KINDS_OF_MOMENTS[as] + data.called(data.queries.scene[query], object);
   return status === "undecided" ? `not before ${inDigits(lo)}, if at all: ${name}` : `${inDigits(t)}: ${name}`;
 }
 

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +62,17 @@ struct RADAR_API Result {
 inline constexpr uint32_t kResultVersion = 5;
 static_assert(sizeof(Result) == 136);
 
+/// How near a query's sensor comes to the objects that take part, on the whole of its way, D included, whatever it
+/// touches. Distances are of surfaces, without the query's clearance: of a round shape, its core's.
+struct Closest {
+  /// The least distance is in there, certainly; world units. Both are 0 exactly if surfaces meet, infinite if no object
+  /// takes part.
+  double lo = std::numeric_limits<double>::infinity(), hi = lo;
+  /// Where it is at most `hi`: t, fraction, the pair, its nearest points' features, and `point`, `normal` and `gap`,
+  /// between these. The status is clear; if surfaces meet, it is the answer to the query without a clearance.
+  Result at{Status::clear};
+};
+
 /// What a query lists besides its first contact.
 struct Listed {
   /// With Query::hits above 1: the first contact with each object, by (t, object), t being exact and not rounded. With
@@ -67,6 +80,12 @@ struct Listed {
   /// lo, but no finite hi.
   std::vector<Result> hits;
   std::vector<ObjectId> overlapping;  ///< with Query::skipOverlapping: the objects left out, ascending
+  std::optional<Closest> closest;     ///< with Query::closest
+  /// With Query::exit: status hit, with the last contact on the way; clear, if there is none; undecided, if the
+  /// clearance leaves it open, with lo and hi. Certainly nothing touches the sensor, or is within the clearance,
+  /// after hi; t is hi. If something is at the end of the way, t = lo = hi = D. The bracket is as narrow as that of a
+  /// first contact. `normal` . direction >= 0; where surfaces cross at the end, point and normal are absent.
+  std::optional<Result> exit;
 };
 
 /// Time of one stage, summed over submissions, milliseconds.

@@ -85,6 +85,12 @@ struct Query {
   /// Mode contact: lists the first contacts with this many nearest objects (Listed::hits), one per object; kAllHits:
   /// with all in reach. 1: no list.
   uint32_t hits = 1;
+  /// Mode contact: also finds how near the sensor comes to objects on the whole of its way (Listed::closest). Neither
+  /// with a turn nor with `ignoreLeaving`.
+  bool closest = false;
+  /// Mode contact: also finds when the last contact on the way ends (Listed::exit): the way out for what overlaps. As
+  /// `closest`.
+  bool exit = false;
 
   /// Mode sampled: pixels along the window's longer side, up to kMaxResolution. 0: chosen from the meshes. Not one of
   /// SweeperOptions, since one Sweeper draws pictures of many sizes, also within a batch.

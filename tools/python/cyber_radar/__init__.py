@@ -23,7 +23,7 @@ import platform
 import numpy as _np
 
 from . import _engine
-from ._casts import Casts, Feature, Hits, Overlapping, Status, Tier
+from ._casts import Casts, Closest, Feature, Hits, Overlapping, Status, Tier
 from ._chain import Chain, Link, Moves
 from ._engine import Error
 from ._files import read_mesh
@@ -37,6 +37,7 @@ __version__: str = _engine.version
 __all__ = [
     "Casts",
     "Chain",
+    "Closest",
     "DeviceInfo",
     "DeviceLostWarning",
     "Error",

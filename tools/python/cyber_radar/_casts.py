@@ -174,6 +174,12 @@ class Casts(Answers):
     """With hits above 1: the first contact with each of the nearest objects; no rows of casts that ask for 1."""
     overlapping: Overlapping | None = None
     """With skip_overlapping: the objects left out."""
+    closest: Closest | None = None
+    """With closest: how near the meshes come to objects on the whole of their ways."""
+    exit: Casts | None = None
+    """With exit: the last contact on each way, t being hi, after which nothing is touched: the way out of what overlaps.
+    CLEAR: nothing is ever touched; t = lo = hi = D: something still is at the end; UNDECIDED, with a clearance: perhaps
+    nothing is ever that near, and certainly nothing after hi."""
     reasons: dict[str, npt.NDArray[np.int64]] = dataclasses.field(default_factory=dict)
     """Why casts are invalid: reason -> their positions, counted in C order."""
     _asked: Asked | None = None
@@ -194,7 +200,8 @@ class Casts(Answers):
         if self.hits is not None:
             offsets = self.hits.offsets[: shown + 1]
             hits = (self.hits.records[: offsets[-1]], offsets)
-        return left_out, hits
+        moments = (None if casts is None else first(casts.records, self.shape, shown) for casts in (self.closest, self.exit))
+        return left_out, hits, *moments
 
     def __getitem__(self, index: Any) -> Casts:
         records, chosen, reasons = self._chosen(index)
@@ -206,6 +213,8 @@ class Casts(Answers):
         if self.overlapping is not None:
             rows, offsets = self.overlapping._rows_of(chosen)
             part.overlapping = Overlapping(self.overlapping.object[rows], offsets, part.shape)
+        part.closest = None if self.closest is None else self.closest[index]
+        part.exit = None if self.exit is None else self.exit[index]
         return part
 
     def _left_out(self) -> str:
@@ -258,6 +267,23 @@ class Hits(Casts, _Ragged):
 
     offsets: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.zeros(1, np.int64))
     of_shape: tuple[int, ...] = ()
+
+
+@dataclasses.dataclass(eq=False, repr=False)
+class Closest(Casts):
+    """Where each mesh comes nearest to an object, on the whole of its way, whatever it touches there: t, fraction, object,
+    tri_a, tri_b, feature_a, feature_b, point, normal, gap. Where surfaces meet, that is the first contact; where no object
+    takes part, there is none. Distances are between surfaces, without a clearance: of a Shape, from its core."""
+
+    distance_lo: npt.NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty(0))
+    """(...) the least distance is at least this, certainly; 0 where surfaces meet, inf where no object takes part."""
+    distance_hi: npt.NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty(0))
+    """(...) and at most this."""
+
+    def __getitem__(self, index: Any) -> Closest:
+        records, _, reasons = self._chosen(index)
+        lo, hi = (np.asarray(ends[index]) for ends in (self.distance_lo, self.distance_hi))
+        return Closest(records, reasons=reasons, distance_lo=lo, distance_hi=hi)
 
 
 @dataclasses.dataclass(eq=False)

@@ -51,9 +51,15 @@ class Scene:
         options: dict[str, Any],
         records: npt.NDArray[Any],
         after_chunk: Callable[[int], object] | None,
-    ) -> tuple[tuple[npt.NDArray[Any], _Ids] | None, tuple[_Ids, _Ids] | None, dict[str, _Ids]]:
-        """Writes `records`. The hits' records and offsets, if any are asked for; what overlaps, likewise; positions by
-        reason."""
+    ) -> tuple[
+        tuple[npt.NDArray[Any], _Ids] | None,
+        tuple[_Ids, _Ids] | None,
+        tuple[npt.NDArray[Any], _Doubles, _Doubles] | None,
+        npt.NDArray[Any] | None,
+        dict[str, _Ids],
+    ]:
+        """Writes `records`. The hits' records and offsets, if any are asked for; what overlaps, likewise; records of the
+        closest approaches, and their distances' brackets; records of the last contacts; positions by reason."""
     def wrong_with_chain(self, chain: Chain) -> str: ...
     def move_chain(
         self,
@@ -91,9 +97,11 @@ class Scene:
         reasons: dict[int, str],
         left_out: dict[int, list[int]],
         hits: tuple[npt.NDArray[Any], _Ids] | None,
+        closest: npt.NDArray[Any] | None,
+        exits: npt.NDArray[Any] | None,
     ) -> str:
-        """`count` casts, of which `names`, `arrays`, `records` and `hits`, C-contiguous, are the first: what was asked, the
-        answers, and the hits' records and offsets."""
+        """`count` casts, of which `names`, `arrays`, `records` and the rest, C-contiguous, are the first: what was asked,
+        the answers, the hits' records and offsets, records of closest approaches and of last contacts."""
 
 def first_singular(matrices: _Doubles) -> tuple[int, str] | None: ...
 def float_vertices(vertices: _Doubles, faces: _U32) -> tuple[_Floats, _Doubles, float]:

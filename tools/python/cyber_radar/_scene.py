@@ -29,7 +29,7 @@ from ._arguments import (
 )
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
 from ._asked import Asked
-from ._casts import Casts, Hits, Overlapping, record_type, records_of
+from ._casts import Casts, Closest, Hits, Overlapping, record_type, records_of
 from ._files import Path, file_mesh, vertices_at
 from ._shapes import Shape
 from ._turns import turn_arrays
@@ -261,6 +261,8 @@ class Scene:
         clearance: npt.ArrayLike = 0.0,
         tolerance: npt.ArrayLike | None = None,
         hits: npt.ArrayLike | Literal["all"] = 1,
+        closest: bool = False,
+        exit: bool = False,
         resolution: int = 0,
         out: Casts | None = None,
         progress: Callable[[int, int], object] | None = None,
@@ -289,6 +291,9 @@ class Scene:
         any_hit: ask only whether there is a contact; cheaper if there is one. A start that overlaps is a HIT, too, and t
             of a hit is the whole way: contact comes by then.
         skip_overlapping: leave out objects whose surfaces cross the mesh's at the start; the answer lists them.
+        closest: find how near the mesh comes to objects on the whole of its way, too (Casts.closest), and
+        exit: when its last contact ends, the way out of what it overlaps (Casts.exit). Neither with turns nor with
+            ignore_leaving.
 
         The next five are one value for all casts, or (...) one for each:
 
@@ -349,13 +354,15 @@ class Scene:
         after_chunk = None if progress is None else lambda done: progress(done, total)
         with self._exclusive() as engine:
             try:
-                listed, overlapping, reasons = engine.cast(shape, arguments, options, records, after_chunk)
+                listed, overlapping, closest, exits, reasons = engine.cast(shape, arguments, options, records, after_chunk)
             finally:
                 warn_of(_engine.take_validation_messages(), ValidationWarning)
                 warn_of(engine.take_losses(), DeviceLostWarning)
         casts = Casts(records) if out is None else out
         casts.hits = None if listed is None else Hits(listed[0], offsets=listed[1], of_shape=shape)
         casts.overlapping = None if overlapping is None else Overlapping(*overlapping, shape)
+        casts.closest = None if closest is None else Closest(closest[0], distance_lo=closest[1], distance_hi=closest[2])
+        casts.exit = None if exits is None else Casts(exits)
         casts.reasons = reasons
         for name in _engine.OPTIONS:
             value = {None: np.nan, "all": 0}.get(options[name], options[name])

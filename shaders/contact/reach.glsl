@@ -1,4 +1,4 @@
-// When nodes come within a clearance: engine/cpu/mesh_search.cpp has the same in doubles (docs/exact.md, "Clearance"). Included
+// When nodes come within a clearance: engine/cpu/node_gap.cpp has the same in doubles (docs/exact.md, "Clearance"). Included
 // after node_pair.glsl. Both meshes' matrices are read anew for each pair of nodes, a row at a time, since a lane has no registers
 // left to keep them in.
 

@@ -9,13 +9,20 @@
 
 namespace radar::cpu {
 
+namespace {
+
+// Of brackets.
+constexpr double kRoom = 8;
+
+}  // namespace
+
 ClosestApproach::ClosestApproach() : NearVisitor(std::numeric_limits<double>::infinity()) {}
 
 void ClosestApproach::consider(const exact::PairName& name, const exact::PlacedPair& pair, const Translation& motion,
                                const PairRule&) {
   const Vector displacement = scaled(motion.wayUntil(motion.end), motion.unit);
-  if (across_ != Vector{} && stayApart(pair.a, pair.b, across_, displacement, reach_)) return;
-  const std::optional<Passage> found = passage(pair.a, pair.b, motion, reach_);
+  if (across_ != Vector{} && stayApart(pair.a, pair.b, across_, displacement, closest_.hi)) return;
+  const std::optional<Passage> found = passage(pair.a, pair.b, motion, closest_.hi);
   if (!found) return;
   closest_.lo = std::min(closest_.lo, found->lo);
   const Result& best = closest_.at;
@@ -33,8 +40,15 @@ void ClosestApproach::consider(const exact::PairName& name, const exact::PlacedP
   setSeparation(at, found->at);
   if (motion.isStep) at.point = exact::withoutZeroSigns(along(at.point, at.t, motion.drift));
   if (!std::isnan(at.normal[0])) across_ = at.normal;
-  // Pairs whose brackets begin before this one's matter, too.
-  reach_ = (1 + 0x1p-20) * found->hi;
+  // Nodes' bounds round, too: pairs that are as near to rounding, as of faces that slide along each other, may be very
+  // many, and change the bracket by no more than this.
+  reach_ = std::max(found->lo - kRoom * (found->hi - found->lo), 0.0);
+}
+
+Closest ClosestApproach::answer() const {
+  Closest closest = closest_;
+  closest.lo = std::min(closest.lo, skipped_);
+  return closest;
 }
 
 }  // namespace radar::cpu

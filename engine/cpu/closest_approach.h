@@ -14,10 +14,9 @@ class ClosestApproach final : public NearVisitor {
                 const PairRule& rule) override;
   bool isBefore(const exact::PairName&) const override { return false; }
   /// t in the units of the motion.
-  Closest answer() const { return closest_; }
+  Closest answer() const;
 
  private:
-  Vector across_{};  // the gap of the nearest pair so far
   Closest closest_;
 };
 

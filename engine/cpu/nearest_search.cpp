@@ -54,15 +54,16 @@ void NearestSearch::push(uint32_t index, uint32_t a, uint32_t b, const Vector& a
   const Other& other = others_[index];
   const gpu::MeshNode &nodeA = sensor_->mesh.tree.nodes[a], &nodeB = other.mesh.tree.nodes[b];
   Open open{0, index, a, b, across};
-  open.least = other.gap.least(nodeA, nodeB, visitor_->reach(), open.across);
-  if (open.least > visitor_->reach()) return;
+  open.least = other.gap.least(nodeA, nodeB, visitor_->reach(), visitor_->across(), open.across);
+  if (open.least > visitor_->reach()) return visitor_->skip(open.least);
   open_.push_back(open);
   std::ranges::push_heap(open_, std::ranges::greater(), &Open::least);
 }
 
 void NearestSearch::advance(double until, uint64_t& pairs) {
   const MeshTree& treeA = sensor_->mesh.tree;
-  while (!open_.empty() && open_[0].least <= until && open_[0].least <= visitor_->reach()) {
+  while (!open_.empty() && open_[0].least <= until) {
+    if (open_[0].least > visitor_->reach()) return visitor_->skip(open_[0].least);
     if (++visits_ % kVisits == 0) throwIfStopped(*stop_);
     std::ranges::pop_heap(open_, std::ranges::greater(), &Open::least);
     const Open open = open_.back();

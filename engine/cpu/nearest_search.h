@@ -2,7 +2,9 @@
 // other.
 #pragma once
 
+#include <algorithm>
 #include <deque>
+#include <limits>
 #include <vector>
 
 #include "cpu/first_contact.h"
@@ -22,14 +24,19 @@ class NearVisitor {
                         const PairRule& rule) = 0;
   /// Whether neither `least` nor a pair after it matters.
   virtual bool isBefore(const exact::PairName& least) const = 0;
-  /// No pair matters that comes no nearer than this, world units.
+  /// Pairs that come no nearer than this, world units, need not be considered.
   double reach() const { return reach_; }
+  /// Pairs are left out that come no nearer than `least`, which is above the reach.
+  void skip(double least) { skipped_ = std::min(skipped_, least); }
+  /// Across the gap of the nearest pair so far, or 0.
+  const Vector& across() const { return across_; }
 
  protected:
   explicit NearVisitor(double reach) : reach_(reach) {}
   ~NearVisitor() = default;
 
-  double reach_;
+  double reach_, skipped_ = std::numeric_limits<double>::infinity();
+  Vector across_{};
 };
 
 /// Reuses its memory between searches. For one thread at a time.

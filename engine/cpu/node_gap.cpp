@@ -88,7 +88,8 @@ Vector NodeGap::leastAlong(const Vector& n, const Vector& apart, const gpu::Mesh
   return least;
 }
 
-double NodeGap::least(const gpu::MeshNode& a, const gpu::MeshNode& b, double enough, Vector& across) const {
+double NodeGap::least(const gpu::MeshNode& a, const gpu::MeshNode& b, double enough, const Vector& likely,
+                      Vector& across) const {
   double most = 0;
   const auto tryAlong = [&](const Vector& n) {
     const double least = leastOf(heightAlong(n, a, b) + std::min(dot(n, motion_.travel), 0.0), n);
@@ -98,7 +99,10 @@ double NodeGap::least(const gpu::MeshNode& a, const gpu::MeshNode& b, double eno
     }
     return most > enough;
   };
-  if (across != Vector{} && tryAlong(across)) return most;
+  const Vector before = across;
+  for (const Vector& n : {before, likely}) {
+    if (n != Vector{} && tryAlong(n)) return most;
+  }
   const Vector apart = boxesOf(a, b).apart;
   // Of those differences, a convex set, the least is approached from the middle's; each direction gives a bound.
   Vector n = along(apart, std::clamp(-perSquared_ * dot(apart, motion_.travel), 0.0, 1.0), motion_.travel);

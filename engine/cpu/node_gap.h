@@ -44,8 +44,9 @@ class NodeGap {
   /// until then.
   double reached(const gpu::MeshNode& a, const gpu::MeshNode& b, double latest) const;
   /// How near they come on the whole way: no nearer than this, world units. Tight only up to `enough`.
-  /// `across`: a normal that may give it, or 0; set to one that does.
-  double least(const gpu::MeshNode& a, const gpu::MeshNode& b, double enough, Vector& across) const;
+  /// `likely`, `across`: normals that may give it, or 0; `across` is set to one that does.
+  double least(const gpu::MeshNode& a, const gpu::MeshNode& b, double enough, const Vector& likely,
+               Vector& across) const;
 
  private:
   struct Boxes {

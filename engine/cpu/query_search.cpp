@@ -102,7 +102,8 @@ Result QuerySearch::lastContact(const Task& task, const ObjectTree& tree, std::s
     const Box& world = tree.worldBox();
     size_t f = 0;
     for (size_t k = 1; k < 3; ++k) f = std::abs(motion.unit[k]) > std::abs(motion.unit[f]) ? k : f;
-    const double way = std::max(world.hi[f] - box.lo[f], box.hi[f] - world.lo[f]);
+    const double way = std::max(world.hi[f] - box.lo[f], box.hi[f] - world.lo[f]) +
+                       64 * kUnit * std::max(std::abs(box.lo[f]), std::abs(box.hi[f]));
     end = std::min(end, std::max(1.01 * way / std::abs(motion.unit[f]), 0.0));
   }
   Piece back;
@@ -158,6 +159,7 @@ Closest QuerySearch::closestApproach(const Query& query, const Scene::Impl& scen
   nearest_.begin(sensor, finder, *stop_);
   const auto reach = [&](double least) {
     nearest_.advance(least, pairs_);
+    if (least > finder.reach()) finder.skip(least);
     return finder.reach();
   };
   walkNear(Participants(query, scene), tree, task.motion, boxOf(task.sensor, query.worldFromMesh.m), reach,

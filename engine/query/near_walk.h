@@ -36,7 +36,7 @@ inline Vector acrossNearest(const Vector& apart, const Vector& half, const Vecto
 inline double leastOf(double height, const Vector& n) {
   const double squared = dot(n, n);
   const bool isInRange = squared > 0x1p-900 && squared < 0x1p900 && height < 0x1p900;
-  return isInRange && height > 0 ? (1 - 0x1p-20) * height / std::sqrt(squared) : 0;
+  return isInRange && height > 0 ? (1 - 8 * kUnit) * (height / std::sqrt(squared)) : 0;
 }
 
 /// Bounds the distances between a moving world box and boxes of the tree over objects.

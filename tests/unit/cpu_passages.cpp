@@ -296,6 +296,22 @@ TEST_CASE("a cube that passes another one at an edge is nearest where the middle
   CHECK(closest.at.object == kNone);
 }
 
+TEST_CASE("of grids that slide along each other, few pairs of triangles are looked at") {
+  Scene scene;
+  const MeshId grid = add(scene, tools::makeGrid(64, tools::Diagonal::rising, [](uint32_t x, uint32_t y) {
+                            return Vec3{0.1 * x, 0.1 * y, 0};
+                          }));
+  scene.addObject({grid, at(0, 0, 0)});
+  Query query{
+      .mesh = grid, .worldFromMesh = at(0.05, 0, 0.3), .direction = {1, 0.3, 0}, .distance = 3, .closest = true};
+  const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
+  const Closest& closest = *answers.lists[0].closest;
+  CHECK(closest.lo <= 0.3);
+  CHECK(closest.hi >= 0.3);
+  CHECK(closest.hi - closest.lo < 1e-12);
+  CHECK(answers.stats.pairs < 1000);
+}
+
 TEST_CASE("what touches on its way has no distance, and its closest approach is the contact") {
   Scene scene;
   const MeshId mesh = add(scene, cube(1));

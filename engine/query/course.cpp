@@ -48,9 +48,10 @@ std::array<double, 3> displacementOf(const Query& query) {
 }
 
 void setDisplacement(Query& query, const std::array<double, 3>& way, Mode mode, bool objectsMove) {
-  const double length = lengthOfWay(way);
   const bool isAlongAxis = (way[0] == 0) + (way[1] == 0) + (way[2] == 0) == 2;
   const bool mayRoundUp = mode == Mode::sampled || (query.clearance > 0 && !objectsMove);
+  // A step needs no length, which takes as long as all else here.
+  const double length = isAlongAxis || mayRoundUp ? lengthOfWay(way) : 0;
   query.motion.reset();
   if (mode == Mode::sampled && length == 0) {
     query.direction = {0, 0, 1};  // no direction changes whether the surfaces meet at the start
@@ -69,7 +70,7 @@ void setDisplacement(Query& query, const std::array<double, 3>& way, Mode mode, 
 }
 
 void toDistances(const Query& query, Result& result) {
-  if (!query.motion || query.turn) return;
+  if (!query.motion || query.turn || std::isinf(result.lo)) return;
   // The length rounds, as products do; the floor is what a subnormal product loses.
   constexpr double kRoom = 0x1p-50, kFloor = std::numeric_limits<double>::denorm_min();
   const double length = lengthOfWay(*query.motion);

@@ -125,11 +125,15 @@ class Plane {
   }
 
  private:
+  static bool isAlong(const Difference& w, const Edge& edge) {
+    return (w.from == edge.first && w.to == edge.second) || (w.from == edge.second && w.to == edge.first);
+  }
   // As sign(Determinant), but what integers decide shares the product of the edges.
   int sideOf(const Difference& w) const {
     const Vector gap = rounded(w);
     const Estimate rough = estimate(gap, roundedX_, roundedY_, underflowOf(gap));
     if (std::abs(rough.value) > rough.error) return signOf(rough.value);
+    if (w.from == w.to || isAlong(w, x_) || isAlong(w, y_)) return 0;
     if (!isScaled_) {
       isScaled_ = true;
       const auto x = scaledVector(along(x_)), y = scaledVector(along(y_));

@@ -69,7 +69,8 @@ struct Closest {
   /// takes part.
   double lo = std::numeric_limits<double>::infinity(), hi = lo;
   /// Where it is at most `hi`: t, fraction, the pair, its nearest points' features, and `point`, `normal` and `gap`,
-  /// between these; of several pairs that are as near, to rounding, one. The status is clear; if surfaces meet, it is the answer to the query without a clearance.
+  /// between these; of several pairs that are as near, to rounding, one. The status is clear; if surfaces meet, it is
+  /// the answer to the query without a clearance.
   Result at{Status::clear};
 };
 

@@ -126,7 +126,7 @@ std::vector<std::string> seeds() {
  {"id": "r", "scene": 0, "sensor": [2], "motion": [0, 0, 1], "turn": {"axis": [0, 1, 2], "angle": 1.5, "centre": [0, 0, 9]}},
  {"id": "s", "scene": 0, "sensor": [2], "turn": {"to": [0,-1,0,2, 1,0,0,0, 0,0,1,3], "about": [0, 1, 0]}}]})",
       head + R"(["b.off"], "scenes": [{"assembly": "parts.obj", "deforms": []}, {"base": 0, "instances": [[0]]}],
- "queries": [{"id": "p", "scene": 1, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "clearance": 0.25},
+ "queries": [{"id": "p", "scene": 1, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "clearance": 0.25, "closest": true, "exit": true},
  {"id": "q", "scene": 1, "sensor": [0], "dir": [1, 0, 0], "D": 3, "ignore_leaving": true, "hits": 2, "mode": "contact"}]})",
       head +
           R"(["a.obj", "b.off"], "scenes": [{"instances": [[1, 1,0,0,2, 0,1,0,2, 0,0,1,0], [0]], "motions": [[1, 0, 1, 0]]}],
@@ -149,7 +149,7 @@ std::vector<std::string> seeds() {
 constexpr const char* kWords =
     R"("format"~"meshes"~"scenes"~"queries"~"id"~"base"~"instances"~"instances_file"~"assembly"~"masks"~)"
     R"("motions"~"deforms"~"scene"~"batch"~"sensor"~"exclude"~"dir"~"D"~"motion"~"turn"~"axis"~"angle"~"centre"~"to"~"about"~"chains"~"links"~"pairs"~"ignored"~"name"~"parent"~"joint"~"origin"~"variable"~"chain"~"from"~"revolute"~"prismatic"~"fixed"~"x"~"y"~"mask"~"any_hit"~"mode"~"speed"~)"
-    R"("file"~"scale"~"tolerance"~"ignore_leaving"~"slack"~"skip_overlapping"~"hits"~"clearance"~"rotation"~"all"~"sampled"~)"
+    R"("file"~"scale"~"tolerance"~"ignore_leaving"~"slack"~"skip_overlapping"~"closest"~"exit"~"hits"~"clearance"~"rotation"~"all"~"sampled"~)"
     R"("contact"~"reference"~"a.obj"~"b.off"~"parts.obj"~"parts.obj#0"~"parts.obj#x"~"instances.stl"~)"
     R"("broken.stl"~"positions.ply"~null~true~false~[~]~{~}~, ~: ~0~-1~1~2~0.5~1e999~1e308~-1e-320~4294967295~)"
     R"(4294967296~18446744073709551615~18446744073709551616~\u0000~\ud800~[0], ~)"

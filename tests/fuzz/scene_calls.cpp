@@ -255,6 +255,8 @@ Query SceneCalls::query() {
   }
   query.ignoreLeaving = choices_.oneIn(4);
   query.skipOverlapping = choices_.oneIn(6);
+  query.closest = choices_.oneIn(8);
+  query.exit = choices_.oneIn(8);
   // Brute force does not know the bounds of meshes, on which the default depends.
   const bool hasBounds =
       std::ranges::any_of(model_.meshes, [](const auto& mesh) { return mesh.second.bounds.has_value(); });

@@ -66,7 +66,7 @@ Batch Answerers::choose() {
     query.resolution = 8u << random_->below(4);
     query.clearance = 0;
     query.hits = 1;
-    query.ignoreLeaving = query.skipOverlapping = false;
+    query.ignoreLeaving = query.skipOverlapping = query.closest = query.exit = false;
     const bool isValid = validate(query, world_->scene(), Mode::sampled).empty();
     if (isValid && drawn.size() < kMostSampled) drawn.push_back(query);
   }

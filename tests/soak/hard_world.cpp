@@ -103,6 +103,7 @@ Query varied(Query query, const Scene& scene, Random& random) {
   setQuestion(query, size, scene.mesh(query.mesh).triangleCount() > 200, random);
   if (random.oneIn(5)) query.ignoreLeaving = !query.ignoreLeaving;
   if (random.oneIn(6)) query.skipOverlapping = !query.skipOverlapping;
+  query.closest = query.exit = random.oneIn(6) && !query.ignoreLeaving && !query.turn;
   if ((query.ignoreLeaving || query.skipOverlapping) && random.oneIn(4)) query.slack = random.magnitude(-14, -3) * size;
   if (random.oneIn(6)) query.mask = random.oneIn(2) ? ~0u : 1u << random.below(32);
   if (random.oneIn(6)) query.exclude.push_back(any);

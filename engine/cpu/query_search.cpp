@@ -57,6 +57,7 @@ struct QuerySearch::Task {
 Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists,
                            const std::stop_token& stop) {
   stop_ = &stop;
+  if (!scene.meshes[query.mesh].parts.empty()) return cutters_.answer(query, scene, tree, lists, pairs_, stop);
   std::vector<ObjectId> skipped;
   if (query.skipOverlapping) skipped = overlapping(query, scene, tree);
   if (turns(query)) return answerTurn(query, scene, tree, skipped, lists);

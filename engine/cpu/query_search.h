@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "cpu/cutter_search.h"
 #include "cpu/mesh_search.h"
 #include "cpu/nearest_search.h"
 #include "cpu/turn_contact.h"
@@ -49,6 +50,7 @@ class QuerySearch {
   std::optional<Translation> past_;        // the sensor's motion past the current object, in a step
   MeshSearch meshes_;
   NearestSearch nearest_;
+  CutterSearch cutters_;
   uint64_t pairs_ = 0;
 };
 

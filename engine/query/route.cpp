@@ -19,7 +19,7 @@ bool isPlain(const Query& query, const Scene& scene) {
   const bool hasOptions = query.turn || impl.moving > 0 || !query.exclude.empty() || query.ignoreLeaving ||
                           query.clearance != 0 || query.slack || query.tolerance || hasLists(query) ||
                           query.hits != 1 || query.resolution > kMaxResolution;
-  if (hasOptions || !scene.hasMesh(query.mesh)) return false;
+  if (hasOptions || !scene.hasMesh(query.mesh) || !impl.meshes[query.mesh].parts.empty()) return false;
   const double size = norm1(query.direction), far = 0x1p1000;
   const bool isUsual = query.motion ? size == 0 && query.distance == 0 && norm1(*query.motion) <= far
                                     : size >= 1 / far && size <= far && query.distance >= 0 && query.distance <= far;
@@ -29,6 +29,7 @@ bool isPlain(const Query& query, const Scene& scene) {
 }  // namespace
 
 const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRevise) {
+  if (!scene.meshes[query.mesh].parts.empty()) return "a cutter";
   if (query.turn) return "a turn";
   if (query.closest || query.exit) return "closest or exit";
   const bool step = isStep(query, scene);

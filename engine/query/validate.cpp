@@ -72,6 +72,16 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
   return {};
 }
 
+// Checks what else a query asks of a cutter.
+std::string validateCutter(const Query& query, Mode mode) {
+  if (std::string wrong = validateRigid(query.worldFromMesh); !wrong.empty()) return "sensor: a cutter: " + wrong;
+  if (query.turn) return "turn: expected none with a cutter";
+  if (query.ignoreLeaving || query.skipOverlapping) {
+    return "sensor: expected neither ignoreLeaving nor skipOverlapping with a cutter";
+  }
+  return mode == Mode::sampled ? "mode: expected contact with a cutter, got sampled" : "";
+}
+
 }  // namespace
 
 std::string validate(const Query& query, const Scene& scene, Mode mode) {
@@ -79,6 +89,9 @@ std::string validate(const Query& query, const Scene& scene, Mode mode) {
   if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
   if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
   if (std::string wrong = validateCourse(query, scene.impl()); !wrong.empty()) return wrong;
+  if (!scene.impl().meshes[query.mesh].parts.empty()) {
+    if (std::string wrong = validateCutter(query, mode); !wrong.empty()) return wrong;
+  }
   for (ObjectId object : query.exclude) {
     if (!scene.hasObject(object)) return "exclude: object " + std::to_string(object) + " does not exist";
   }

@@ -5,12 +5,13 @@
 #include "math/number_text.h"
 #include "math/vector.h"
 #include "radar/chain.h"
+#include "scene/scene.h"
 
 namespace radar {
 
 namespace {
 
-constexpr double kMostAngle = 0x1p16, kMostLength = 0x1p300, kRigid = 1e-6;
+constexpr double kMostAngle = 0x1p16, kMostLength = 0x1p300;
 constexpr size_t kMostLinks = 1024;
 
 std::string wrongPlace(const Transform& pose) {
@@ -22,17 +23,8 @@ std::string wrongPlace(const Transform& pose) {
 }
 
 std::string wrongRigid(const Transform& pose) {
-  if (std::string wrong = wrongPlace(pose); !wrong.empty()) return wrong;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const double sum = pose.m[i] * pose.m[k] + pose.m[4 + i] * pose.m[4 + k] + pose.m[8 + i] * pose.m[8 + k];
-      if (!(std::abs(sum - (i == k ? 1 : 0)) <= kRigid)) {
-        return "expected a rigid pose: the products of its columns differ from 0 and 1 by at most 1e-6, got " +
-               textOf(sum) + " of columns " + std::to_string(i) + " and " + std::to_string(k);
-      }
-    }
-  }
-  return {};
+  std::string wrong = wrongPlace(pose);
+  return wrong.empty() ? validateRigid(pose) : wrong;
 }
 
 std::string wrongLink(const Chain& chain, uint32_t index, const Scene& scene) {
@@ -57,6 +49,7 @@ std::string wrongLink(const Chain& chain, uint32_t index, const Scene& scene) {
     if (!scene.hasMesh(link.meshes[i].mesh)) {
       return name + "mesh " + std::to_string(link.meshes[i].mesh) + " of the scene does not exist";
     }
+    if (!scene.impl().meshes[link.meshes[i].mesh].parts.empty()) return name + "expected a mesh, got a cutter";
     if (std::string wrong = wrongPlace(link.meshes[i].linkFromMesh); !wrong.empty()) return name + wrong;
   }
   return {};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "math/box.h"
+#include "math/ring_hull.h"
 #include "radar/scene.h"
 #include "scene/mesh_tree.h"
 
@@ -23,6 +24,7 @@ struct Mesh {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
   bool used = false;
+  std::vector<RingHull> parts;   ///< of a cutter, which its triangles only show; else empty
   bool hasBounds = false;        ///< declared, within which a host may move its vertices
   uint32_t objects = 0;          ///< number of objects that use it
   uint32_t firstHostVertex = 0;  ///< the number of vertex 0 in a host's buffer
@@ -63,6 +65,15 @@ void setBox(Mesh& mesh, const Box& box);
 
 /// As of Scene::addMesh, but for its version.
 Mesh makeMesh(std::span<const float> positions, std::span<const uint32_t> indices, const std::optional<Bounds>& bounds);
+
+/// Of a cutter. Throws as Scene::addCutter.
+std::vector<RingHull> hullsOf(const Cutter& cutter);
+/// Triangles that show a cutter.
+struct DrawnCutter {
+  std::vector<float> positions;
+  std::vector<uint32_t> indices;
+};
+DrawnCutter drawn(std::span<const RingHull> hulls);
 
 /// As of Scene::setPositions. If it throws, nothing has changed.
 void movePositions(Mesh& mesh, std::span<const float> positions);

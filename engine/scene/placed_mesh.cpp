@@ -24,9 +24,25 @@ struct Interval {
   double lo, hi;
 };
 
+// Of a cutter.
+Box boxOfCutter(std::span<const RingHull> parts, const std::array<double, 12>& m) {
+  Box box;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &m[4 * row];
+    const Vector n{r[0], r[1], r[2]};
+    for (const RingHull& part : parts) {
+      const double room = 0x1p-47 * (std::abs(r[3]) + norm1(n) * part.size());
+      box.hi[row] = std::max(box.hi[row], r[3] + part.support(n) + room);
+      box.lo[row] = std::min(box.lo[row], r[3] - part.support(scaled(-1, n)) - room);
+    }
+  }
+  return box;
+}
+
 }  // namespace
 
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
+  if (!mesh.parts.empty()) return boxOfCutter(mesh.parts, m);
   // Not yet a Box: reading back as vectors what has just been stored number by number stalls.
   std::array<Interval, 3> axes;
   double magnitude = 0;

@@ -50,6 +50,20 @@ std::string validate(const Transform& pose) {
   return {};
 }
 
+std::string validateRigid(const Transform& pose) {
+  constexpr double kRigid = 1e-6;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const double sum = pose.m[i] * pose.m[k] + pose.m[4 + i] * pose.m[4 + k] + pose.m[8 + i] * pose.m[8 + k];
+      if (!(std::abs(sum - (i == k ? 1 : 0)) <= kRigid)) {
+        return "expected a rigid pose: the products of its columns differ from 0 and 1 by at most 1e-6, got " +
+               textOf(sum) + " of columns " + std::to_string(i) + " and " + std::to_string(k);
+      }
+    }
+  }
+  return {};
+}
+
 std::string validateMotion(const std::array<double, 3>& motion) {
   for (double value : motion) {
     if (!(std::abs(value) <= kMostMotion)) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <new>
+#include <optional>
 
 #include "math/float_environment.h"
 #include "scene/parallel.h"
@@ -87,27 +88,40 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
+MeshId Scene::Impl::add(Mesh mesh) {
+  mesh.version = nextVersion();
+  auto id = static_cast<MeshId>(meshes.size());
+  if (freeMeshes.empty()) {
+    meshes.push_back(std::move(mesh));
+  } else {
+    id = freeMeshes.top();
+    freeMeshes.pop();
+    meshes[id] = std::move(mesh);
+  }
+  meshVersion = nextVersion();
+  return id;
+}
+
 MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                       const std::optional<Bounds>& bounds) {
   const FloatEnvironment floats;
-  Mesh mesh = makeMesh(positions, indices, bounds);
-  mesh.version = nextVersion();
-  auto id = static_cast<MeshId>(impl_->meshes.size());
-  if (impl_->freeMeshes.empty()) {
-    impl_->meshes.push_back(std::move(mesh));
-  } else {
-    id = impl_->freeMeshes.top();
-    impl_->freeMeshes.pop();
-    impl_->meshes[id] = std::move(mesh);
-  }
-  impl_->meshVersion = nextVersion();
-  return id;
+  return impl_->add(makeMesh(positions, indices, bounds));
+}
+
+MeshId Scene::addCutter(const Cutter& cutter) {
+  const FloatEnvironment floats;
+  std::vector<RingHull> parts = hullsOf(cutter);
+  const DrawnCutter shown = drawn(parts);
+  Mesh mesh = makeMesh(shown.positions, shown.indices, std::nullopt);
+  mesh.parts = std::move(parts);
+  return impl_->add(std::move(mesh));
 }
 
 void Scene::setPositions(MeshId id, std::span<const float> positions) {
   const FloatEnvironment floats;
   if (!hasMesh(id)) throw Error("setPositions: " + idText("mesh", id) + " does not exist");
   Mesh& mesh = impl_->meshes[id];
+  if (!mesh.parts.empty()) throw Error("setPositions: " + idText("mesh", id) + " is a cutter");
   movePositions(mesh, positions);
   mesh.version = impl_->meshVersion = nextVersion();
   if (mesh.objects == 0) return;
@@ -130,6 +144,9 @@ void Scene::removeMesh(MeshId mesh) {
 ObjectId Scene::addObject(const Object& object) {
   const FloatEnvironment floats;
   if (!hasMesh(object.mesh)) throw Error("addObject: " + idText("mesh", object.mesh) + " does not exist");
+  if (!impl_->meshes[object.mesh].parts.empty()) {
+    throw Error("addObject: " + idText("mesh", object.mesh) + " is a cutter, which only queries move");
+  }
   if (std::string wrong = validate(object.worldFromMesh); !wrong.empty()) throw Error("addObject: pose: " + wrong);
   if (std::string wrong = validateMotion(object.motion); !wrong.empty()) throw Error("addObject: motion: " + wrong);
   if (impl_->freeObjects.empty()) requireAtMost("addObject", "objects", impl_->objects.size() + 1, kMostItems);

@@ -44,6 +44,7 @@ struct Scene::Impl {
   /// Records that objects were added, moved or removed.
   void change(std::span<const ObjectId> changed);
   void change(ObjectId object) { change({&object, 1}); }
+  MeshId add(Mesh mesh);
   /// Makes an id free if none is. If it throws, nothing has changed.
   void makeRoom();
   size_t moving = 0;               ///< number of objects that move during a step
@@ -92,6 +93,8 @@ inline bool isStep(const Query& query, const Scene::Impl& scene) {
 inline constexpr double kMostMotion = 0x1p1000;
 /// Whether a pose certainly passes the test of validate(), as most do.
 bool isSurelyValid(const Transform& pose);
+/// Empty, or what is wrong with a pose that is to be rigid to 1e-6: the products of its columns.
+std::string validateRigid(const Transform& pose);
 /// Empty, or what is wrong with a displacement during a step.
 std::string validateMotion(const std::array<double, 3>& motion);
 

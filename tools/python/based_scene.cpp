@@ -17,7 +17,10 @@ const Transform& BasedScene::given(ObjectId object) const {
 
 MeshId BasedScene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices, const Base& base,
                            double radius) {
-  const MeshId mesh = scene_.addMesh(positions, indices);
+  return entered(scene_.addMesh(positions, indices), base, radius);
+}
+
+MeshId BasedScene::entered(MeshId mesh, const Base& base, double radius) {
   bases_.resize(std::max<size_t>(bases_.size(), mesh + 1));
   bases_[mesh] = base;
   radii_.resize(bases_.size());

@@ -25,6 +25,7 @@ class BasedScene {
 
   // As those of Scene.
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices, const Base& base, double radius);
+  MeshId addCutter(const Cutter& cutter) { return entered(scene_.addCutter(cutter), {}, 0); }
   void setPositions(MeshId mesh, std::span<const float> positions, const Base& base);
   void removeMesh(MeshId mesh) { scene_.removeMesh(mesh); }
   ObjectId addObject(const Object& object);
@@ -33,6 +34,8 @@ class BasedScene {
   void removeObject(ObjectId object);
 
  private:
+  MeshId entered(MeshId mesh, const Base& base, double radius);
+
   Scene scene_;
   std::vector<Base> bases_;              // by mesh
   std::vector<double> radii_;            // likewise

@@ -51,6 +51,31 @@ MeshId addMesh(CastingScene& scene, const Array<float>& vertices, const Array<ui
   return mesh;
 }
 
+/// Of each part, the heights, radii and corners of its rings.
+using Rings = std::vector<std::vector<std::array<double, 3>>>;
+
+Rings ringsOf(const std::string& kind, const std::vector<double>& n) {
+  const Cutter cutter = kind == "flat"        ? flatCutter(n.at(0), n.at(1))
+                        : kind == "ball"      ? ballCutter(n.at(0), n.at(1))
+                        : kind == "bull_nose" ? bullNoseCutter(n.at(0), n.at(1), n.at(2))
+                        : kind == "cone"      ? coneCutter(n.at(0), n.at(1), n.at(2), n.at(3))
+                                              : taperCutter(n.at(0), n.at(1), n.at(2), n.at(3));
+  Rings out(1);
+  for (const Ring& ring : cutter.parts[0]) out[0].push_back({ring.height, ring.radius, ring.corner});
+  return out;
+}
+
+MeshId addCutter(CastingScene& scene, const Rings& parts) {
+  Cutter cutter;
+  for (const auto& part : parts) {
+    cutter.parts.emplace_back();
+    for (const auto& [height, radius, corner] : part) cutter.parts.back().push_back({height, radius, corner});
+  }
+  MeshId mesh = kNone;
+  edit(scene, [&](BasedScene& to) { mesh = to.addCutter(cutter); });
+  return mesh;
+}
+
 void setVertices(CastingScene& scene, MeshId mesh, const Array<float>& vertices, const Array<double>& base) {
   edit(scene, [mesh, positions = copyOf(vertices), from = baseFrom(base)](BasedScene& to) {
     to.setPositions(mesh, positions, from);
@@ -144,6 +169,8 @@ py::tuple objects(const CastingScene& scene) {
 void defineScene(py::module_& module, py::class_<CastingScene>& scene) {
   scene.def(py::init(&makeScene), py::arg("device"), py::arg("pool"), py::arg("cpu_batch"), py::arg("threads"))
       .def("add_mesh", &addMesh, py::arg("vertices"), py::arg("faces"), py::arg("base"), py::arg("radius") = 0)
+      .def("add_cutter", &addCutter)
+      .def_static("cutter_rings", &ringsOf)
       .def("radii",
            [](const CastingScene& of) {
              std::vector<double> radii;

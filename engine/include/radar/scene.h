@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "radar/cutters.h"
 #include "radar/error.h"
 
 namespace radar {
@@ -79,15 +80,19 @@ class RADAR_API Scene {
   /// the faster the search. All other calls use these positions.
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                  const std::optional<Bounds>& bounds = std::nullopt);
+  /// Adds a cutter, as a mesh that shows it: queries that move this mesh are about the solid itself (radar/query.h).
+  /// Their poses are rigid to 1e-6; no object of a scene, and no link of a chain, is a cutter. Throws unless it has a
+  /// part, each part's rings span a solid, heights are at most 2^100 and radii from 0 to that.
+  MeshId addCutter(const Cutter& cutter);
   /// Moves the vertices of a mesh: 3 floats for each, as many as it has. Its tree is fitted to them, and built anew
-  /// only if that would make it much worse. Throws if the mesh does not exist or has another number of vertices, a
-  /// number is not finite, or a triangle's vertex is outside the mesh's `bounds`.
+  /// only if that would make it much worse. Throws if the mesh does not exist, is a cutter or has another number of
+  /// vertices, a number is not finite, or a triangle's vertex is outside the mesh's `bounds`.
   void setPositions(MeshId mesh, std::span<const float> positions);
   /// Throws if an object uses the mesh.
   void removeMesh(MeshId mesh);
 
-  /// Throws if the mesh does not exist, the pose is singular or has a number that is not finite or above 2^800, a
-  /// component of the motion is above 2^1000, or the scene has 2^29 objects.
+  /// Throws if the mesh does not exist or is a cutter, the pose is singular or has a number that is not finite or above
+  /// 2^800, a component of the motion is above 2^1000, or the scene has 2^29 objects.
   ObjectId addObject(const Object& object);
   void setTransform(ObjectId object, const Transform& worldFromMesh);
   /// The same for many objects, one transform each, on all cores; the last one counts if an object is given twice.

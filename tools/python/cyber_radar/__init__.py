@@ -25,6 +25,7 @@ import numpy as _np
 from . import _engine
 from ._casts import Casts, Closest, Feature, Hits, Overlapping, Status, Tier
 from ._chain import Chain, Link, Moves
+from ._cutters import Cutter, ball_cutter, bull_nose, cone, flat, taper
 from ._engine import Error
 from ._files import read_mesh
 from ._scene import Objects, Scene
@@ -38,6 +39,7 @@ __all__ = [
     "Casts",
     "Chain",
     "Closest",
+    "Cutter",
     "DeviceInfo",
     "DeviceLostWarning",
     "Error",
@@ -56,11 +58,16 @@ __all__ = [
     "Turns",
     "ValidationWarning",
     "ball",
+    "ball_cutter",
+    "bull_nose",
     "capsule",
+    "cone",
     "devices",
+    "flat",
     "load_urdf",
     "read_mesh",
     "rounded",
+    "taper",
     "turn_between",
     "versions",
 ]

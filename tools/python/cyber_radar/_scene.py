@@ -31,6 +31,7 @@ from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals
 from ._asked import Asked
 from ._casts import Casts, Closest, Hits, Overlapping, record_type, records_of
 from ._files import Path, file_mesh, vertices_at
+from ._cutters import Cutter
 from ._shapes import Shape
 from ._turns import turn_arrays
 from ._warnings import DeviceLostWarning, MeshFileWarning, ValidationWarning, warn_of
@@ -89,7 +90,7 @@ class Scene:
             threads=one_whole_number(threads, "threads", 0, 4096),
         )
         self._names: dict[int, str] = {}
-        self._shapes: dict[tuple[bytes, bytes, float], int] = {}  # meshes of those that casts were given
+        self._shapes: dict[tuple[Any, ...], int] = {}  # meshes of those that casts were given
         self._lock = threading.Lock()
         self._user: int | None = None  # the thread that holds the lock
         self._is_lost = False  # to a thread of the process that forked this one
@@ -105,8 +106,12 @@ class Scene:
         faces: (M, 3), whole numbers: the vertices of each triangle.
 
         Or only one argument, a mesh of another package: anything with `vertices` and `faces`, as in trimesh, or
-        `triangles`, as in Open3D. Or a Shape, such as ball(2): casts of the mesh then have the radius.
+        `triangles`, as in Open3D. Or a Shape, such as ball(2): casts of the mesh then have the radius. Or a Cutter, such as
+        flat(3, 50), which only casts move.
         """
+        if isinstance(vertices, Cutter):
+            with self._exclusive() as engine:
+                return engine.add_cutter(vertices.rings())
         numbers, corners = mesh_arrays(vertices, faces)
         floats, base = about_base(numbers, corners)
         radius = vertices.radius if isinstance(vertices, Shape) else 0.0
@@ -244,7 +249,7 @@ class Scene:
 
     def cast(
         self,
-        mesh: npt.ArrayLike | Shape,
+        mesh: npt.ArrayLike | Shape | Cutter,
         poses: npt.ArrayLike | None,
         displacements: npt.ArrayLike | None = None,
         *,
@@ -269,8 +274,8 @@ class Scene:
     ) -> Casts:
         """How far can a mesh move before its surface first touches an object? Any number of casts at once.
 
-        mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these. Or a Shape,
-            such as ball(2), which becomes a mesh of the scene, one for all shapes that are equal.
+        mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these. Or a Shape
+            or Cutter, such as ball(2), which becomes a mesh of the scene, one for all that are equal.
         poses: (..., 4, 4) or (..., 3, 4) world from mesh at the start, affine; None: the identity.
         displacements: (..., 3) the way to go, its end included; world units, at most 2^1000. With a zero the mesh
             rests: only what is there at the start, or moves (set_motions), meets it.
@@ -321,7 +326,7 @@ class Scene:
             raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
         options["mode"] = mode
         options["resolution"] = one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION)
-        if isinstance(mesh, Shape):
+        if isinstance(mesh, (Shape, Cutter)):
             mesh = self._mesh_of(mesh)
         excluded = self._excluded(exclude_from_all, exclude_from_each)
         arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
@@ -460,8 +465,12 @@ class Scene:
             )
         return np.concatenate([rows, np.broadcast_to(all_ids, (*rows.shape[:-1], all_ids.size))], axis=-1)
 
-    def _mesh_of(self, shape: Shape) -> int:
-        key = shape.vertices.tobytes(), shape.faces.tobytes(), shape.radius
+    def _mesh_of(self, shape: Shape | Cutter) -> int:
+        key: tuple[Any, ...]
+        if isinstance(shape, Cutter):
+            key = (shape.parts,)
+        else:
+            key = shape.vertices.tobytes(), shape.faces.tobytes(), shape.radius
         if key not in self._shapes:
             self._shapes[key] = self.add_mesh(shape)
         return self._shapes[key]

@@ -230,7 +230,7 @@ void EdgeTouch::offerRing(size_t index) {
     return;
   }
   // The height of the farthest point over the edge grows along with the sine of the normal's angle.
-  double sine = aim / span, least = -1, most = 1;
+  double sine = aim / span, least = -1, most = 1, last = 4;
   Vector n = forward_;
   for (int i = 0; i < kMostSteps; ++i) {
     const double cosine = std::sqrt((1 - sine) * (1 + sine));
@@ -246,7 +246,9 @@ void EdgeTouch::offerRing(size_t index) {
     (miss > 0 ? least : most) = sine;
     const double bend = ring.radius * perSide * (flatDot(aside_, turned) - ofAside * ofTurned);
     double step = miss / (bend / cosine + ring.corner);
-    if (!(sine + step > least && sine + step < most)) step = 0.5 * least + 0.5 * most - sine;
+    const bool isGood = sine + step > least && sine + step < most && std::abs(step) < 0.5 * last;
+    if (!isGood) step = 0.5 * least + 0.5 * most - sine;
+    last = std::abs(step);
     sine += step;
     if (std::abs(step) <= kAngle) break;
   }
@@ -268,14 +270,14 @@ void EdgeTouch::offerSide(const RingHull::Side& side) {
 
 double EdgeTouch::place(double length) const {
   const auto placeOf = [&](const Vector& x) { return dot(along(x, t_, way_), edge_) - dot(from_, edge_); };
-  if (by_ == By::end) {
+  if (by_ == By::end && flatDot(normal_, normal_) <= kAngle * kAngle * dot(normal_, normal_)) {
     // The nearest to the axis is on the flat end if any is.
     const Vector then = along(from_, -t_, way_);
     const double squared = flatDot(edge_, edge_);
     return squared > 0 ? -flatDot(then, edge_) / squared : 0.5 * length;
   }
-  // Rings above each other may have led to the same normal.
-  if (by_ == By::ring) return placeOf(hull_.farthest(hull_.ringAlong(normal_), normal_));
+  // Rings above each other, or an end and the ring beside it, may have led to the same normal.
+  if (by_ != By::side) return placeOf(hull_.farthest(hull_.ringAlong(normal_), normal_));
   const Vector lower = hull_.farthest(lower_, normal_);
   const Vector upper = hull_.farthest(upper_, normal_);
   const double below = dot(aside_, lower) - at_, above = dot(aside_, upper) - at_, from = placeOf(lower),

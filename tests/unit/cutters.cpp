@@ -296,6 +296,48 @@ TEST_CASE("a plane and a point prove each first contact of a cutter that moves a
   CHECK(overlaps > 1000);
 }
 
+TEST_CASE("cutters fall onto a relief, also right above its vertices and edges, as far as closed forms say") {
+  constexpr int kCells = 8;
+  Random random(3);
+  std::vector<float> corners;
+  std::vector<uint32_t> faces;
+  for (int i = 0; i <= kCells; ++i) {
+    for (int k = 0; k <= kCells; ++k) {
+      const double height = i == 4 ? 0.5 : random.uniform(-0.4, 0.4);
+      for (const double x : {0.5 * i, 0.5 * k, height}) corners.push_back(static_cast<float>(x));
+      if (i == kCells || k == kCells) continue;
+      const auto a = static_cast<uint32_t>(i * (kCells + 1) + k), c = a + kCells + 1;
+      for (const uint32_t corner : {a, c, c + 1, a, c + 1, a + 1}) faces.push_back(corner);
+    }
+  }
+  Scene scene;
+  scene.addObject({scene.addMesh(corners, faces)});
+  for (int which = 0; which < kKinds; ++which) {
+    const Kind kind = kindOf(random, which);
+    const MeshId cutter = scene.addCutter(kind.cutter);
+    for (int place = 0; place < 17 * 17; ++place) {
+      const double x = 0.25 * (place % 17), y = 0.25 * (place / 17);  // NOLINT(bugprone-integer-division)
+      CAPTURE(kind.name, x, y);
+      Real top = -kNever;
+      for (size_t f = 0; f < faces.size(); f += 3) {
+        Corners here;
+        for (size_t i = 0; i < 3; ++i) {
+          const float* p = &corners[3 * size_t{faces[f + i]}];
+          here[i] = {p[0] - x, p[1] - y, p[2]};
+        }
+        top = std::max(top, heightOver(kind, here));
+      }
+      const Result result =
+          ask(scene,
+              {.mesh = cutter, .worldFromMesh = tools::placedAt({x, y, 9}), .direction = {0, 0, -1}, .distance = 12});
+      REQUIRE(result.status == Status::hit);
+      REQUIRE(result.lo <= 9 - top + 1e-14);
+      REQUIRE(result.hi >= 9 - top - 1e-14);
+      REQUIRE(result.hi - result.lo <= 1e-9 * kind.radius);
+    }
+  }
+}
+
 TEST_CASE("cutters touch level faces, edges along the way, points and segments") {
   const std::vector<Kind> kinds = [] {
     std::vector<Kind> out;

@@ -258,7 +258,7 @@ Result CutterSearch::answer(const Query& query, const Scene::Impl& scene, const 
   }
   course.toQuery(first);
   if (lists == nullptr) return first;
-  *lists = {contact.nearest(), {}};
+  *lists = {contact.nearest(), {}, {}, {}};
   for (Result& hit : lists->hits) {
     if (hit.status == Status::overlap) {
       LeastAtStart least(way);

@@ -79,6 +79,7 @@ std::string validateCutter(const Query& query, Mode mode) {
   if (query.ignoreLeaving || query.skipOverlapping) {
     return "sensor: expected neither ignoreLeaving nor skipOverlapping with a cutter";
   }
+  if (query.closest || query.exit) return "sensor: expected neither closest nor exit with a cutter";
   return mode == Mode::sampled ? "mode: expected contact with a cutter, got sampled" : "";
 }
 

@@ -488,6 +488,8 @@ TEST_CASE("what a cutter cannot do is refused by name") {
   CHECK_THAT(refusal([](Query& q) { q.worldFromMesh.m[0] = 2; }), test::Contains("a cutter: expected a rigid pose"));
   CHECK_THAT(refusal([](Query& q) { q.ignoreLeaving = true; }), test::Contains("with a cutter"));
   CHECK_THAT(refusal([](Query& q) { q.skipOverlapping = true; }), test::Contains("with a cutter"));
+  CHECK_THAT(refusal([](Query& q) { q.closest = true; }), test::Contains("with a cutter"));
+  CHECK_THAT(refusal([](Query& q) { q.exit = true; }), test::Contains("with a cutter"));
   CHECK_THAT(refusal([](Query& q) {
                q.direction = {};
                q.distance = 0;

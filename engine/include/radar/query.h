@@ -37,7 +37,8 @@ struct Turn {
 /// surface inside it touches. Brackets are as narrow as rounding allows; what touches only to within rounding, or at
 /// exactly the end, may be undecided. A clearance grows the solid by a ball. Result::triA is the part of the cutter,
 /// featureA none; `point` is on the object, at the start inside the cutter, of the least (object, triB, part); `gap` is
-/// the clearance, NaN at the start. Neither a turn, nor ignoreLeaving and skipOverlapping; `tolerance` has no effect.
+/// the clearance, NaN at the start. Neither a turn, nor ignoreLeaving, skipOverlapping, closest and exit; `tolerance`
+/// has no effect.
 ///
 /// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
 struct Query {

@@ -1,11 +1,32 @@
-// Round sensors in query files.
+// Round sensors and cutters in query files.
 #include "query_texts.h"
 
 using namespace radar;
 using namespace radar::tools;
+using radar::test::Contains;
 using radar::test::Files;
 using radar::test::goodFile;
 using radar::test::StartsWith;
+
+TEST_CASE("cutters have their kind's numbers, and a holder above") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["meshes"] = nlohmann::json::parse(R"(["a.obj",
+    {"shape": "bull_nose", "radius": 3, "corner": 1, "length": 20, "holder": [[[20, 5], [30, 8, 0.5]]]},
+    {"shape": "cone", "radius": 3, "angle": 0.5, "length": 20},
+    {"shape": "taper", "radius": 3, "angle": 0.25, "tip_radius": 1, "length": 20}])");
+  const Workload workload = files.read(file.dump());
+  CHECK(workload.meshes[0].cutter.parts.empty());
+  const Cutter& tool = workload.meshes[1].cutter;
+  REQUIRE(tool.parts.size() == 2);
+  CHECK(tool.parts[0][0].radius == 2);
+  CHECK(tool.parts[1][1].corner == 0.5);
+  CHECK(workload.meshes[1].triangleCount() > 100);
+  CHECK(workload.meshes[2].cutter.parts[0][0].radius == 0);
+  CHECK(workload.meshes[3].cutter.parts[0][0].corner == 1);
+  file["scenes"][0]["instances"].push_back({1});
+  CHECK_THAT(files.refusal(file.dump()), Contains("expected a mesh, got the cutter 1"));
+}
 
 TEST_CASE("round sensors have their radius beside the clearance of a query") {
   Files files;

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <unordered_set>
 
@@ -34,11 +35,77 @@ double radiusFrom(const JsonValue& value) {
   return radius;
 }
 
+/// What radar/cutters.h makes: the numbers of each, in its order, the last of a cone's being 0 if missing.
+struct CutterKind {
+  const char* name;
+  std::vector<const char*> numbers;
+  Cutter (*make)(const std::vector<double>& n);
+};
+const std::vector<CutterKind>& cutterKinds() {
+  using Numbers = const std::vector<double>&;
+  static const std::vector<CutterKind> kinds{
+      {"flat", {"radius", "length"}, [](Numbers n) { return flatCutter(n[0], n[1]); }},
+      {"ball_cutter", {"radius", "length"}, [](Numbers n) { return ballCutter(n[0], n[1]); }},
+      {"bull_nose", {"radius", "corner", "length"}, [](Numbers n) { return bullNoseCutter(n[0], n[1], n[2]); }},
+      {"cone",
+       {"radius", "angle", "length", "tip_radius"},
+       [](Numbers n) { return coneCutter(n[0], n[1], n[2], n[3]); }},
+      {"taper", {"radius", "angle", "tip_radius", "length"}, [](Numbers n) {
+         return taperCutter(n[0], n[1], n[2], n[3]);
+       }}};
+  return kinds;
+}
+
+/// {"shape": "flat", "radius": 3, "length": 50, "holder": [[[50, 15], [80, 20]]]}
+FileMesh cutterFrom(const JsonValue& value, const CutterKind& kind) {
+  const bool isCone = kind.name == std::string("cone");
+  std::set<std::string> keys{"shape", "holder"};
+  keys.insert(kind.numbers.begin(), kind.numbers.end());
+  for (const auto& [key, unused] : value.json().items()) {
+    if (!keys.contains(key)) value.refuse("\"" + key + "\": expected none in a " + kind.name);
+  }
+  std::vector<double> numbers;
+  for (const char* key : kind.numbers) {
+    const bool isMissing = isCone && key == std::string("tip_radius") && !value.has(key);
+    numbers.push_back(isMissing ? 0 : value.member(key).number());
+  }
+  FileMesh mesh;
+  mesh.name = kind.name;
+  value.guard([&] {
+    mesh.cutter = kind.make(numbers);
+    return 0;
+  });
+  value.ifHas("holder", [&](const JsonValue& holder) {
+    for (size_t i = 0; i < holder.size(); ++i) {
+      mesh.cutter.parts.emplace_back();
+      for (size_t k = 0; k < holder[i].size(); ++k) {
+        const JsonValue ring = holder[i][k];
+        if (ring.size() != 2 && ring.size() != 3) ring.expected("2 or 3 numbers: height, radius and corner");
+        mesh.cutter.parts.back().push_back(
+            {ring[0].number(), ring[1].number(), ring.size() == 3 ? ring[2].number() : 0});
+      }
+    }
+  });
+  value.guard([&] {
+    Scene scene;
+    const MeshView shown = scene.mesh(scene.addCutter(mesh.cutter));
+    mesh.positions.assign(shown.positions.begin(), shown.positions.end());
+    mesh.indices.assign(shown.indices.begin(), shown.indices.end());
+    return 0;
+  });
+  return mesh;
+}
+
 /// {"shape": "ball", "radius": 2}, {"shape": "capsule", "from": [0,0,0], "to": [0,0,3], "radius": 2}
 FileMesh shapeFrom(const JsonValue& value) {
   const JsonValue kind = value.member("shape");
   const std::string name = kind.string();
-  if (name != "ball" && name != "capsule") kind.expected("\"ball\" or \"capsule\"");
+  for (const CutterKind& cutter : cutterKinds()) {
+    if (name == cutter.name) return cutterFrom(value, cutter);
+  }
+  if (name != "ball" && name != "capsule") {
+    kind.expected("\"ball\", \"capsule\", \"flat\", \"ball_cutter\", \"bull_nose\", \"cone\" or \"taper\"");
+  }
   std::vector<double> corners(3);
   if (name == "ball") {
     requireKnownKeys(value, {"shape", "radius"});
@@ -194,6 +261,9 @@ void Reader::readScene(const JsonValue& scene) {
   readInstances(scene, spec);
   for (size_t i = 0; i < spec.instances.size(); ++i) {
     const uint32_t mesh = spec.instances[i].mesh;
+    if (!workload_.meshes[mesh].cutter.parts.empty()) {
+      scene.refuse("instance " + std::to_string(i) + ": expected a mesh, got the cutter " + std::to_string(mesh));
+    }
     if (workload_.meshes[mesh].radius == 0) continue;
     scene.refuse("instance " + std::to_string(i) +
                  ": expected a mesh without a radius, which only sensors have, got mesh " + std::to_string(mesh));

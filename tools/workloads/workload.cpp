@@ -103,6 +103,18 @@ std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resoluti
   return batches;
 }
 
+namespace {
+
+void add(const MeshData& mesh, Scene& to) {
+  if (mesh.cutter.parts.empty()) {
+    to.addMesh(mesh.positions, mesh.indices);
+  } else {
+    to.addCutter(mesh.cutter);
+  }
+}
+
+}  // namespace
+
 void replaceBy(const Workload& workload, uint32_t scene, Scene& to) {
   for (ObjectId id = 0; id < to.objectLimit(); ++id) {
     if (to.hasObject(id)) to.removeObject(id);
@@ -110,14 +122,14 @@ void replaceBy(const Workload& workload, uint32_t scene, Scene& to) {
   for (MeshId id = 0; id < to.meshLimit(); ++id) {
     if (to.hasMesh(id)) to.removeMesh(id);
   }
-  for (const MeshData& mesh : workload.meshes) to.addMesh(mesh.positions, mesh.indices);
+  for (const MeshData& mesh : workload.meshes) add(mesh, to);
   for (const Deformation& deformed : workload.scenes[scene].deforms) to.setPositions(deformed.mesh, deformed.positions);
   const Objects objects(workload, scene);
   for (uint32_t i = 0; i < workload.objectCount(scene); ++i) to.addObject(objects[i]);
 }
 
 ScenePlayer::ScenePlayer(const Workload& workload) : workload_(workload) {
-  for (const MeshData& mesh : workload.meshes) scene_.addMesh(mesh.positions, mesh.indices);
+  for (const MeshData& mesh : workload.meshes) add(mesh, scene_);
 }
 
 void ScenePlayer::show(uint32_t scene) {

@@ -23,6 +23,7 @@ struct MeshData {
   std::vector<uint32_t> indices;  ///< 3 per triangle
   /// Of a round sensor (radar/shapes.h); a query's clearance includes that of its mesh. No object has such a mesh.
   double radius = 0;
+  Cutter cutter{};  ///< if it has parts, the triangles only show it; nor is it an object's
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
 };

@@ -55,10 +55,14 @@ def test_equal_cutters_share_a_mesh(scene):
 def test_what_cutters_cannot_do_is_refused_by_name(scene):
     tool = flat(1, 5)
     mesh = scene.add_mesh(tool)
+    for casts, problem in (
+        (fall(scene, tool, [1, 1, 5], mode="sampled"), "expected contact with a cutter"),
+        (fall(scene, tool, [1, 1, 5], ignore_leaving=True), "with a cutter"),
+        (scene.cast(tool, np.diag([2.0, 2.0, 2.0, 1.0]), [0, 0, 1]), "expected a rigid pose"),
+    ):
+        assert casts.status == Status.INVALID
+        assert problem in next(iter(casts.reasons))
     for call, problem in (
-        (lambda: fall(scene, tool, [1, 1, 5], mode="sampled"), "expected contact with a cutter"),
-        (lambda: fall(scene, tool, [1, 1, 5], ignore_leaving=True), "with a cutter"),
-        (lambda: scene.cast(tool, np.diag([2.0, 2.0, 2.0, 1.0]), [0, 0, 1]), "expected a rigid pose"),
         (lambda: scene.add(mesh), "is a cutter"),
         (lambda: flat(0, 5), "flatCutter: radius"),
         (lambda: ball_cutter(1, 0.5), "at least the radius"),

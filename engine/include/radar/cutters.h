@@ -28,18 +28,16 @@ struct Cutter {
 
 // With their tips at the origin. All throw Error unless their numbers are finite, above 0 and as said.
 
-/// A cylinder. OpenCAMLib's CylCutter.
+/// A cylinder.
 RADAR_API Cutter flatCutter(double radius, double length);
-/// A ball, and a cylinder up to `length`, which is at least the radius. OpenCAMLib's BallCutter.
+/// A ball, and a cylinder up to `length`, which is at least the radius.
 RADAR_API Cutter ballCutter(double radius, double length);
-/// A cylinder whose lower rim is rounded by `corner`, which is at most the radius and the length. OpenCAMLib's
-/// BullCutter.
+/// A cylinder whose lower rim is rounded by `corner`, which is at most the radius and the length.
 RADAR_API Cutter bullNoseCutter(double radius, double corner, double length);
 /// A cone, and a cylinder up to `length`, where the cone ends at the latest. `angle`, radians, below pi/2: between the
-/// axis and the side. `tipRadius`: of the flat tip, less than `radius`; may be 0. OpenCAMLib's ConeCutter.
+/// axis and the side. `tipRadius`: of the flat tip, less than `radius`; may be 0.
 RADAR_API Cutter coneCutter(double radius, double angle, double length, double tipRadius = 0);
 /// A ball of `tipRadius`, above it a cone that touches it, as of coneCutter, and a cylinder up to `length`.
-/// OpenCAMLib's BallConeCutter.
 RADAR_API Cutter taperCutter(double radius, double angle, double tipRadius, double length);
 
 }  // namespace radar

@@ -1,8 +1,8 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// Meshes and objects are in scene.h, balls and capsules in shapes.h, queries in query.h, queries from displacements and
-// poses in displacement.h, answers in answers.h, Vulkan devices in device.h, a scene's copy on one in scene_copy.h, a
-// host's buffers in host.h, Eigen's matrices in eigen.h. Who answers:
+// Meshes and objects are in scene.h, balls and capsules in shapes.h, cutters in cutters.h, queries in query.h, queries
+// from displacements and poses in displacement.h, answers in answers.h, Vulkan devices in device.h, a scene's copy on
+// one in scene_copy.h, a host's buffers in host.h, Eigen's matrices in eigen.h. Who answers:
 //
 //   one device, or just the answers   Sweeper     (here)           run() blocks; the CPU takes what no device does
 //   no device                         CpuSweeper  (cpu_sweeper.h)  the same bits

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "math/float_environment.h"
 #include "math/frame.h"
@@ -75,11 +76,12 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
 // Checks what else a query asks of a cutter.
 std::string validateCutter(const Query& query, Mode mode) {
   if (std::string wrong = validateRigid(query.worldFromMesh); !wrong.empty()) return "sensor: a cutter: " + wrong;
-  if (query.turn) return "turn: expected none with a cutter";
-  if (query.ignoreLeaving || query.skipOverlapping) {
-    return "sensor: expected neither ignoreLeaving nor skipOverlapping with a cutter";
+  for (const auto& [name, isGiven] :
+       {std::pair{"turn", query.turn.has_value()}, std::pair{"ignoreLeaving", query.ignoreLeaving},
+        std::pair{"skipOverlapping", query.skipOverlapping}, std::pair{"closest", query.closest},
+        std::pair{"exit", query.exit}}) {
+    if (isGiven) return name + std::string(": expected none with a cutter");
   }
-  if (query.closest || query.exit) return "sensor: expected neither closest nor exit with a cutter";
   return mode == Mode::sampled ? "mode: expected contact with a cutter, got sampled" : "";
 }
 

@@ -307,6 +307,18 @@ double roundedUp(const DoubleDouble& x) {
   return x.high < Of<DoubleDouble>::never ? (1 + 2 * kUnit) * x.high : std::numeric_limits<double>::infinity();
 }
 
+/// Times a power of two, outwards where that rounds.
+double unscaledDown(double x, double unscale) {
+  const double out = unscale * x;
+  return x > 0 && out < std::numeric_limits<double>::min()
+             ? std::max(out - std::numeric_limits<double>::denorm_min(), 0.0)
+             : out;
+}
+double unscaledUp(double x, double unscale) {
+  const double out = unscale * x;
+  return x > 0 && out < std::numeric_limits<double>::min() ? out + std::numeric_limits<double>::denorm_min() : out;
+}
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Of triangle a, moved by `way` along the unit vector, and b.
@@ -330,7 +342,7 @@ Separation inWorld(const Moment<Real>& moment, const Real& way, const exact::Tri
 template <class Real>
 Approach inWorld(const Found<Real>& found, const exact::Triangle& a, const exact::Triangle& b, const Point<Real>& unit,
                  double unscale) {
-  Approach out{unscale * roundedDown(found.lo), unscale * roundedUp(found.hi), {}};
+  Approach out{unscaledDown(roundedDown(found.lo), unscale), unscaledUp(roundedUp(found.hi), unscale), {}};
   if (found.atLo) out.atLo = inWorld(*found.atLo, found.lo, a, b, unit, unscale);
   return out;
 }
@@ -352,11 +364,26 @@ Pair<double> roughPair(const exact::Triangle& a, const exact::Triangle& b, const
           scale * tolerance};
 }
 
+/// How far a step goes, scaled and rounded up. A double is above it by more than double-doubles lose.
+DoubleDouble wayOf(const Vector& displacement, double scale) {
+  const int exponent = std::ilogb(largest(displacement));
+  Point<DoubleDouble> d;
+  for (size_t k = 0; k < 3; ++k) d[k].high = std::ldexp(displacement[k], -exponent);
+  const DoubleDouble length = DoubleDouble{1, 0x1p-99} * exact::root(dot(d, d));
+  const double unscale = scale * std::ldexp(1.0, exponent);
+  return {unscale * length.high, unscale * length.low};
+}
+
 Pair<DoubleDouble> finePair(const Pair<double>& rough, const exact::Triangle& a, const exact::Triangle& b,
                             const Translation& motion, double scale) {
-  return {relative<DoubleDouble>(a, a[0], scale), relative<DoubleDouble>(b, a[0], scale),
-          normalised(motion.direction),           {rough.clearance},
-          {std::min(rough.distance, 1e290)},      {rough.tolerance}};
+  DoubleDouble distance{std::min(rough.distance, 1e290)};
+  if (motion.isStep) distance = motion.stands ? DoubleDouble{} : std::min(distance, wayOf(motion.direction, scale));
+  return {relative<DoubleDouble>(a, a[0], scale),
+          relative<DoubleDouble>(b, a[0], scale),
+          normalised(motion.direction),
+          {rough.clearance},
+          distance,
+          {rough.tolerance}};
 }
 
 /// The same motion from its end back.
@@ -448,25 +475,24 @@ std::optional<Approach> leaving(const exact::Triangle& a, const exact::Triangle&
   const bool goesPast = rough.distance > kPast;
   rough.distance = std::min(rough.distance, kPast);
   // From the end back.
-  const auto inTime = [&]<class Real>(const Found<Real>& found, const Point<Real>& unit) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const Real end{rough.distance};
-    if (!(found.hi < Real{Of<Real>::never})) return Approach{-kInfinity, unscale * roundedUp(end - found.lo), {}};
+  const double distance = motion.wayUntil(motion.end);
+  const auto inTime = [&]<class Real>(const Found<Real>& found, const Point<Real>& unit, const Real& end) {
+    const double last = unscaledUp(roundedUp(Real{1 + 4 * kUnit} * (end - found.lo)), unscale);
+    const double hi = std::min(last, distance);
+    if (!(found.hi < Real{Of<Real>::never})) return Approach{-std::numeric_limits<double>::infinity(), hi, {}};
     if (found.hi == Real{} && !goesPast) {
-      const double distance = motion.wayUntil(motion.end);
       return Approach{distance, distance, inWorld(*found.atLo, end, a, b, unit, unscale)};
     }
-    return Approach{unscale * std::max(roundedDown(Real{1 - 4 * kUnit} * (end - found.hi)), 0.0),
-                    unscale * roundedUp(Real{1 + 4 * kUnit} * (end - found.lo)),
+    return Approach{unscaledDown(std::max(roundedDown(Real{1 - 4 * kUnit} * (end - found.hi)), 0.0), unscale), hi,
                     inWorld(*found.atLo, end - found.lo, a, b, unit, unscale)};
   };
   const Pair<double> back = reversed(rough);
   const auto found = search(back);
   if (!found) return std::nullopt;
-  if (!found->isRough || found->hi - found->lo <= rough.tolerance) return inTime(*found, motion.unit);
+  if (!found->isRough || found->hi - found->lo <= rough.tolerance) return inTime(*found, motion.unit, rough.distance);
   const Pair<DoubleDouble> fine = finePair(rough, a, b, motion, scale);
   const auto better = search(reversed(fine));
-  return better ? std::optional(inTime(*better, fine.unit)) : std::nullopt;
+  return better ? std::optional(inTime(*better, fine.unit, fine.distance)) : std::nullopt;
 }
 
 std::optional<Passage> passage(const exact::Triangle& a, const exact::Triangle& b, const Translation& motion,
@@ -476,7 +502,7 @@ std::optional<Passage> passage(const exact::Triangle& a, const exact::Triangle& 
   Pair<double> rough = roughPair(a, b, motion, std::min(reach, unscale * kPast), 0, scale);
   rough.distance = std::min(rough.distance, kPast);
   const auto inWay = [&]<class Real>(const Least<Real>& found, const Point<Real>& unit) {
-    return Passage{unscale * roundedDown(found.lo), unscale * roundedUp(found.hi),
+    return Passage{unscaledDown(roundedDown(found.lo), unscale), unscaledUp(roundedUp(found.hi), unscale),
                    std::min(unscale * Of<Real>::rounded(found.way), motion.wayUntil(motion.end)),
                    inWorld(found.at, found.way, a, b, unit, unscale)};
   };

@@ -20,6 +20,7 @@ ClosestApproach::ClosestApproach() : NearVisitor(std::numeric_limits<double>::in
 
 void ClosestApproach::consider(const exact::PairName& name, const exact::PlacedPair& pair, const Translation& motion,
                                const PairRule&) {
+  ++considered_;
   const Vector displacement = scaled(motion.wayUntil(motion.end), motion.unit);
   if (across_ != Vector{} && stayApart(pair.a, pair.b, across_, displacement, closest_.hi)) return;
   const std::optional<Passage> found = passage(pair.a, pair.b, motion, closest_.hi);

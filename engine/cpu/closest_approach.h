@@ -13,10 +13,13 @@ class ClosestApproach final : public NearVisitor {
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, const Translation& motion,
                 const PairRule& rule) override;
   bool isBefore(const exact::PairName&) const override { return false; }
+  bool leavesTies() const override { return considered_ > kMany; }
   /// t in the units of the motion.
   Closest answer() const;
 
  private:
+  static constexpr uint64_t kMany = 4096;
+  uint64_t considered_ = 0;
   Closest closest_;
 };
 

@@ -84,6 +84,7 @@ void LastContact::consider(const exact::PairName& name, const exact::PlacedPair&
   last_ = last;
   name_ = name;
   if (last->lo < 0) return;
+  if (query_.clearance > 0 && !std::isnan(last->normal[0])) across_ = last->normal;
   atStart_ = last->lo == motion_->end;
   first_ = name;
   // What ends a little earlier may have a bracket that reaches beyond this one's.

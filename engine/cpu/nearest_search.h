@@ -30,6 +30,9 @@ class NearVisitor {
   void skip(double least) { skipped_ = std::min(skipped_, least); }
   /// Across the gap of the nearest pair so far, or 0.
   const Vector& across() const { return across_; }
+  /// Whether so many pairs have been considered that those may be skipped, too, that are nearer than the reach by no
+  /// more than placing a mesh rounds.
+  virtual bool leavesTies() const { return false; }
 
  protected:
   explicit NearVisitor(double reach) : reach_(reach) {}
@@ -63,6 +66,7 @@ class NearestSearch {
     PairMotion pair;
     NodeGap gap;
     GapTest lead;
+    double rounding;  ///< world units: of a bound on the gap of nodes, at most
     Other(ObjectId id, const Mesh& m, const Transform& p, const MeshPlacement& sensor, const Translation& t,
           const Piece& w, const PairRule& r);
   };
@@ -71,7 +75,11 @@ class NearestSearch {
     uint32_t other, a, b;
     Vector across;  ///< what gives it
   };
-  void push(uint32_t other, uint32_t a, uint32_t b, const Vector& across);
+  Open openOf(uint32_t other, uint32_t a, uint32_t b, const Vector& across) const;
+  /// If not, it is skipped.
+  bool matters(const Open& open) const;
+  void push(const Open& open);
+  void descend(Open open, uint64_t& pairs);
 
   const PlacedMesh* sensor_ = nullptr;
   NearVisitor* visitor_ = nullptr;

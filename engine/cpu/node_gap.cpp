@@ -77,7 +77,8 @@ double NodeGap::reached(const gpu::MeshNode& a, const gpu::MeshNode& b, double l
   return spare > 0 ? (1 - 0x1p-20) * spare / std::max(speed, 0x1p-1000) : 0;
 }
 
-Vector NodeGap::leastAlong(const Vector& n, const Vector& apart, const gpu::MeshNode& a, const gpu::MeshNode& b) const {
+Vector NodeGap::farthestBack(const Vector& n, const Vector& apart, const gpu::MeshNode& a,
+                             const gpu::MeshNode& b) const {
   Vector least = dot(n, motion_.travel) < 0 ? along(apart, 1, motion_.travel) : apart;
   for (int k = 0; k < 3; ++k) {
     const Vector edgeA{a_.linear[0][k], a_.linear[1][k], a_.linear[2][k]},
@@ -92,7 +93,7 @@ double NodeGap::least(const gpu::MeshNode& a, const gpu::MeshNode& b, double eno
                       Vector& across) const {
   double most = 0;
   const auto tryAlong = [&](const Vector& n) {
-    const double least = leastOf(heightAlong(n, a, b) + std::min(dot(n, motion_.travel), 0.0), n);
+    const double least = leastAlong(n, a, b);
     if (least > most) {
       most = least;
       across = n;
@@ -108,7 +109,7 @@ double NodeGap::least(const gpu::MeshNode& a, const gpu::MeshNode& b, double eno
   Vector n = along(apart, std::clamp(-perSquared_ * dot(apart, motion_.travel), 0.0, 1.0), motion_.travel);
   for (int i = 0; i < kMostDirections; ++i) {
     if (tryAlong(n)) return most;
-    const Vector step = minus(leastAlong(n, apart, a, b), n);
+    const Vector step = minus(farthestBack(n, apart, a, b), n);
     const double gain = -dot(n, step), squared = dot(step, step);
     if (!(gain > kLittle * dot(n, n))) return most;
     n = along(n, std::min(gain / squared, 1.0), step);

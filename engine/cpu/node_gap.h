@@ -48,6 +48,11 @@ class NodeGap {
   double least(const gpu::MeshNode& a, const gpu::MeshNode& b, double enough, const Vector& likely,
                Vector& across) const;
 
+  /// The same by a plane across n; 0 if n is.
+  double leastAlong(const Vector& n, const gpu::MeshNode& a, const gpu::MeshNode& b) const {
+    return leastOf(heightAlong(n, a, b) + std::min(dot(n, motion_.travel), 0.0), n);
+  }
+
  private:
   struct Boxes {
     Vector apart;  ///< of their middles, at the start
@@ -55,7 +60,7 @@ class NodeGap {
   };
   Boxes boxesOf(const gpu::MeshNode& a, const gpu::MeshNode& b) const;
   /// Of all differences of a point of A's box, on its way, and one of B's box, the one that reaches least along n.
-  Vector leastAlong(const Vector& n, const Vector& apart, const gpu::MeshNode& a, const gpu::MeshNode& b) const;
+  Vector farthestBack(const Vector& n, const Vector& apart, const gpu::MeshNode& a, const gpu::MeshNode& b) const;
   /// How far they are apart along n at the start, at least.
   double heightAlong(const Vector& n, const gpu::MeshNode& a, const gpu::MeshNode& b) const;
 

@@ -296,20 +296,58 @@ TEST_CASE("a cube that passes another one at an edge is nearest where the middle
   CHECK(closest.at.object == kNone);
 }
 
-TEST_CASE("of grids that slide along each other, few pairs of triangles are looked at") {
+TEST_CASE("of grids that slide along each other, few pairs of triangles are looked at, however far the way leads") {
   Scene scene;
-  const MeshId grid = add(scene, tools::makeGrid(64, tools::Diagonal::rising, [](uint32_t x, uint32_t y) {
-                            return Vec3{0.1 * x, 0.1 * y, 0};
+  const MeshId grid = add(scene, tools::makeGrid(32, tools::Diagonal::rising, [](uint32_t x, uint32_t y) {
+                            return Vec3{0.125 * x, 0.125 * y, 0};
                           }));
+  const auto [start, way, distance] = GENERATE(std::tuple{Vec3{0.05, 0, 0.3}, Vec3{1, 0.3, 0}, 3.0},
+                                               std::tuple{Vec3{-8.2, 0.02, 0.3}, Vec3{1, 0, 0}, 16.0},
+                                               std::tuple{Vec3{-8.2, 0.02, 0.3}, Vec3{1, 0.3, 0.01}, 1e308});
+  CAPTURE(start[0], distance);
   scene.addObject({grid, at(0, 0, 0)});
-  Query query{
-      .mesh = grid, .worldFromMesh = at(0.05, 0, 0.3), .direction = {1, 0.3, 0}, .distance = 3, .closest = true};
+  Query query{.mesh = grid, .worldFromMesh = tools::placedAt(start), .direction = way, .distance = distance};
+  query.closest = true;
   const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
   const Closest& closest = *answers.lists[0].closest;
-  CHECK(closest.lo <= 0.3);
-  CHECK(closest.hi >= 0.3);
+  CHECK(closest.lo >= 0.29);
+  CHECK(closest.hi <= 0.4);
   CHECK(closest.hi - closest.lo < 1e-12);
-  CHECK(answers.stats.pairs < 1000);
+  CHECK(answers.stats.pairs < 6000);
+}
+
+TEST_CASE("a step that ends a rounding before contact is that near, and not within less") {
+  Scene scene;
+  const MeshId mesh = scene.addMesh(std::vector<float>{0, 0, 0, 0, 1, 0, 0, 0, 1}, std::vector<uint32_t>{0, 1, 2});
+  scene.addObject({mesh, at(1, 0, 0)});
+  for (const double rest : {0x1p-20, 0x1p-40, 0x1p-45, 0x1p-50, 0x1p-52}) {
+    CAPTURE(rest);
+    Query query{.mesh = mesh, .motion = Vector{1 - rest, 0, 0}, .closest = true};
+    const Closest closest = *CpuSweeper(scene, 1).run({&query, 1}).lists[0].closest;
+    CHECK(closest.lo <= rest);
+    CHECK(closest.hi >= rest);
+    CHECK(closest.hi <= 1.001 * rest);
+    query.closest = false;
+    query.exit = true;
+    query.clearance = 0.5 * rest;
+    const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
+    CHECK(answers.results[0].status != Status::hit);
+    CHECK(answers.lists[0].exit->status != Status::hit);
+  }
+}
+
+TEST_CASE("an exit at about the clearance from the end is not after the end") {
+  Scene scene;
+  const MeshId mesh = scene.addMesh(std::vector<float>{0, 0, 0, 0, 1, 0, 0, 0, 1}, std::vector<uint32_t>{0, 1, 2});
+  scene.addObject({mesh, at(0, 0, 0)});
+  for (int ulps = 0; ulps < 200; ++ulps) {
+    Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 1 + ulps * 0x1p-52, .clearance = 1, .exit = true};
+    const Result exit = *CpuSweeper(scene, 1).run({&query, 1}).lists[0].exit;
+    CAPTURE(ulps, exit.lo, exit.hi);
+    REQUIRE(exit.hi <= query.distance);
+    REQUIRE(exit.hi >= 1);
+    REQUIRE(exit.lo <= 1);
+  }
 }
 
 TEST_CASE("what touches on its way has no distance, and its closest approach is the contact") {

@@ -6,9 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-import cyber_radar
-from cutters import Tool
-
 DIGITS = 4  # that are written behind the point
 Touches = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
@@ -27,12 +24,6 @@ def poses_at(points: np.ndarray) -> np.ndarray:
     poses = np.zeros((*points.shape[:-1], 4, 4)) + np.eye(4)
     poses[..., :3, 3] = points
     return poses
-
-
-def touches(scene: cyber_radar.Scene, tool: Tool, points: np.ndarray, ends: np.ndarray, mode: str) -> np.ndarray:
-    """Whether a tool may meet the part anywhere on the straight ways of its tip from points (n, 3) to ends (n, 3)."""
-    poses = poses_at(points + [0, 0, tool.above])
-    return scene.cast(tool.shape, poses, ends - points, any_hit=True, mode=mode).status != cyber_radar.Status.CLEAR
 
 
 def length(points: np.ndarray) -> float:
@@ -65,13 +56,3 @@ def free_path(points: np.ndarray, height: Callable[[np.ndarray], np.ndarray], to
         points = np.insert(points, long + 1, np.column_stack([middles, height(middles)]), axis=0)
         unknown = np.insert(unknown, long + 1, True)
     return points, gouged
-
-
-def lift_of(points: np.ndarray, heights: np.ndarray, touches: Touches, step: float) -> float:
-    """How much higher above the tip a holder must begin, so that it touches the part at no point and on no move of a
-    path (n, 3); heights: those at which it does (n,)."""
-    lift = max(0.0, float((heights - points[:, 2]).max()))
-    while touches(points[:-1] + [0, 0, lift], points[1:] + [0, 0, lift]).any():
-        lift = float(written_up(np.array(lift + step)))
-        step *= 2
-    return lift

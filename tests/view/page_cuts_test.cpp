@@ -28,8 +28,8 @@ TEST_CASE("meshes that are too much for a page are boxes of the same size, with 
 TEST_CASE("a page shows the lists of the first queries, and keeps the objects in them") {
   Workload workload = makeWorkload(Figure7{.teapots = 3, .boxes = 100'010, .steps = 1});
   const std::vector<Result> answers(workload.queries.size(), Result(Status::clear));
-  std::vector<Result> contacts(60'000, Result(Status::hit));
-  for (uint32_t i = 0; i < contacts.size(); ++i) contacts[i].object = 100'009;
+  std::vector<ListedMoment> contacts(60'000, {Result(Status::hit)});
+  for (ListedMoment& contact : contacts) contact.result.object = 100'009;
   PageContent content;
   for (const uint32_t query : {0u, 2u}) content.moments[query] = contacts;
   const nlohmann::json data = test::pageData(pageOf(workload, answers, content));

@@ -21,7 +21,7 @@ namespace radar {
 /// Which method answers a batch.
 enum class Mode : uint32_t {
   sampled,  ///< select, then the paper's method: `hi` is certain, `lo` is 0, a contact may be missed
-  contact   ///< the exact search, on the device or on the CPU: never undecided, unless Query::clearance is above 0
+  contact   ///< the exact search, on the device or the CPU: only a clearance, a turn or a cutter may leave it undecided
 };
 
 /// A turn by `angle`, radians, about an axis through `centre`, which moves by Query::motion meanwhile and stays in the

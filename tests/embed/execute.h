@@ -15,7 +15,7 @@ inline bool isRecordable(const Query& query, const Scene& scene) {
   for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
     isMoving = isMoving || (scene.hasObject(id) && scene.object(id).motion != std::array<double, 3>{});
   }
-  if (query.turn || query.skipOverlapping || (isMoving && !query.motion)) return false;
+  if (query.turn || query.closest || query.exit || query.skipOverlapping || (isMoving && !query.motion)) return false;
   return query.clearance == 0 || !(query.ignoreLeaving || query.hits > 1 || query.motion || isMoving);
 }
 

@@ -73,7 +73,7 @@ std::vector<Query> contactQueries(uint32_t count) {
     query.hits = kind == 2 ? 3 : kind == 3 ? kAllHits : kind == 9 ? 2 : 1;
     query.skipOverlapping = kind == 3 || kind == 8;
     query.ignoreLeaving = kind == 4;
-    query.closest = query.exit = kind == 5 || kind == 10;
+    query.closest = query.exit = kind == 9 || kind == 10;
     query.clearance = kind == 5 || kind == 9 ? 0.05 : 0;
     if (kind == 6) tools::takeStep(query);
     if (kind == 7) query.mask = 1;

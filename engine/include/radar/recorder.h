@@ -105,7 +105,8 @@ class RADAR_API Recorder {
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
   /// Throws before recording anything if a query breaks its contract, or asks for what only the CPU combines, and so a
-  /// Sweeper answers: skipOverlapping; a direction while objects move; a clearance with ignoreLeaving, hits or a step.
+  /// Sweeper answers: skipOverlapping, closest and exit; turns and cutters; a direction while objects move; a clearance
+  /// with ignoreLeaving, hits or a step.
   /// Likewise if there are more queries or searches than Capacity says, a query has more than 2^15 objects in reach,
   /// `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});

@@ -78,8 +78,9 @@ FileMesh cutterFrom(const JsonValue& value, const CutterKind& kind) {
   value.ifHas("holder", [&](const JsonValue& holder) {
     for (size_t i = 0; i < holder.size(); ++i) {
       mesh.cutter.parts.emplace_back();
-      for (size_t k = 0; k < holder[i].size(); ++k) {
-        const JsonValue ring = holder[i][k];
+      const JsonValue part = holder[i];
+      for (size_t k = 0; k < part.size(); ++k) {
+        const JsonValue ring = part[k];
         if (ring.size() != 2 && ring.size() != 3) ring.expected("2 or 3 numbers: height, radius and corner");
         mesh.cutter.parts.back().push_back(
             {ring[0].number(), ring[1].number(), ring.size() == 3 ? ring[2].number() : 0});

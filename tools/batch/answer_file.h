@@ -24,8 +24,8 @@ struct AnswerNames {
 };
 
 /// One line, without its end. All keys of the format are there, with null for what the answer does not have;
-/// `reason` only where the status is invalid, `hits`, `overlapping`, `closest` and `exit` only where the query asks for them,
-/// `object_name` and `overlapping_names` only where objects have names.
+/// `reason` only where the status is invalid, `hits`, `overlapping`, `closest` and `exit` only where the query asks for
+/// them, `object_name` and `overlapping_names` only where objects have names.
 std::string answerLine(const QuerySpec& query, const Answer& answer, const AnswerNames& names = {});
 
 /// The same as a row of comma-separated values (RFC 4180, but lines end as lines do), under this head; both with their

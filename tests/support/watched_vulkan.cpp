@@ -215,7 +215,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, c
   const std::lock_guard lock(mutex);
   const std::string_view name = wanted;
   lookedUp.emplace(name);
-  lastInstance = instance;
+  if (instance != VK_NULL_HANDLE) lastInstance = instance;  // another thread may load a device's functions meanwhile
   if (name == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
 #define RADAR_WRAP(function) \
   if (name == "vk" #function) return wrap<&gpu::Api::function>(instance, "vk" #function);

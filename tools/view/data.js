@@ -16,13 +16,13 @@ import { between, lengthOf, minus, plus, times, turned } from "./vectors.js";
  *   way: 3; asked: options given
  * @typedef {{status: Uint8Array, t: Float64Array, lo: Float64Array, hi: Float64Array, object: Uint32Array,
  *   tri_a: Uint32Array, tri_b: Uint32Array, point: Float64Array, normal: Float64Array, gap: Float64Array,
- *   link?: Uint32Array, mesh?: Uint32Array, other_link?: Uint32Array, other_mesh?: Uint32Array}} Answers
- *   point, normal: 3; where there are chains, links and which of their meshes
+ *   as?: Uint8Array, link?: Uint32Array, mesh?: Uint32Array, other_link?: Uint32Array, other_mesh?: Uint32Array}} Answers
+ *   point, normal: 3; as: of moments alone; where there are chains, links and which of their meshes
  * @typedef {{width: number, height: number, pixel: number, d: number, length: number, R: Float32Array, M: Float32Array,
  *   L: Float32Array, origin: number[], right: number[], up: number[], forward: number[]}} Scopes
  * @typedef {{title: string, notes: string[], tour: {query?: number, play?: string}[], none: number, statuses: string[],
  *   meshes: object[], chains: import("./chains.js").Chain[], scenes: SceneRow[], queries: Queries, answers: Answers,
- *   moments: Answers & {first: Uint32Array, as: Uint8Array}, left: Record<number, number[]>,
+ *   moments: Answers & {first: Uint32Array}, left: Record<number, number[]>,
  *   reasons: Record<number, string>, others: Record<number, {words: string, t: ?number, object: number}>,
  *   scopes: Record<number, Scopes>}} Written
  */
@@ -66,7 +66,7 @@ export class Answer {
     this.query = query;
     this.isListed = isListed;
     /** Of what is listed: a contact, the closest approach, or the last contact. */
-    this.as = isListed ? ["contact", "closest", "exit"][from.as[i]] : "";
+    this.as = isListed ? ["contact", "closest", "exit"][from.as?.[i] ?? 0] : "";
     /** @type {?Answer[]} */
     this.list = null;
     this.status = data.statuses[from.status[i]];

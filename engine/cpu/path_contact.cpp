@@ -104,7 +104,7 @@ bool PairPath::certainlyMeet(const Places& places) const {
 
 void PathContact::setTolerance(double tolerance, double speed) {
   tolerance_ = tolerance;
-  fine_ = speed > 0 ? std::min(tolerance / speed, 1.0) : 1;
+  fine_ = speed > 0 ? std::min(0.5 * tolerance / speed, 1.0) : 1;
 }
 
 // Goes forward in steps: by as much of each as the triangles certainly stay apart.

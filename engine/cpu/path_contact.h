@@ -69,7 +69,7 @@ class PathContact : public BracketedContact {
   bool counts(const exact::PlacedPair&) const override { return true; }
 
   double tolerance_ = 0;
-  double fine_ = 1;  // s in which the sensor moves by the tolerance
+  double fine_ = 1;  // s in which the sensor moves by half the tolerance
   double from_ = 0, to_ = 1;
 };
 

@@ -2,11 +2,8 @@
 #include "query_texts.h"
 
 using namespace radar;
+using namespace radar::test;
 using namespace radar::tools;
-using radar::test::Contains;
-using radar::test::Files;
-using radar::test::goodFile;
-using radar::test::StartsWith;
 
 namespace {
 

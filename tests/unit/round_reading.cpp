@@ -2,11 +2,8 @@
 #include "query_texts.h"
 
 using namespace radar;
+using namespace radar::test;
 using namespace radar::tools;
-using radar::test::Contains;
-using radar::test::Files;
-using radar::test::goodFile;
-using radar::test::StartsWith;
 
 TEST_CASE("cutters have their kind's numbers, and a holder above") {
   Files files;
@@ -67,4 +64,30 @@ TEST_CASE("round sensors have their radius beside the clearance of a query") {
   CHECK(again.queries[2].clearance == 0.625);
   file["queries"][1]["mode"] = "sampled";
   CHECK_THAT(files.refusal(file.dump()), StartsWith("queries[1].mode: expected contact or reference"));
+}
+
+TEST_CASE("a shape that breaks its contract is refused with its path, what was expected and what was found") {
+  Files files;
+  const struct {
+    const char *mesh, *path, *problem;
+  } cases[] = {
+      {R"({"shape": "ball", "radius": -1})", "meshes[0].radius: ", "from 0 to 2^1000, got -1"},
+      {R"({"shape": "ball"})", "meshes[0]: ", "\"radius\", which is missing"},
+      {R"({"shape": "ball", "radius": 1, "from": []})", "meshes[0].from: ", "keys shape, radius"},
+      {R"({"shape": "torus", "radius": 1})", "meshes[0].shape: ", "\"cone\" or \"taper\", got \"torus\""},
+      {R"({"shape": "flat", "radius": 1})", "meshes[0]: ", "\"length\", which is missing"},
+      {R"({"shape": "flat", "radius": 1, "length": 9, "corner": 1})",
+       "meshes[0]: ", "\"corner\": expected none in a flat"},
+      {R"({"shape": "ball_cutter", "radius": 2, "length": 1})", "meshes[0]: ", "length: expected at least the radius"},
+      {R"({"shape": "flat", "radius": 2, "length": 1, "holder": [[[1]]]})",
+       "meshes[0].holder[0][0]: ", "2 or 3 numbers"},
+      {R"({"shape": "capsule", "from": [0,0,0], "to": [0,1e39,0], "radius": 1})", "meshes[0].to[1]: ", "floats hold"},
+      {R"({"shape": "capsule", "from": [0,0], "to": [0,1,0], "radius": 1})", "meshes[0].from: ", "3 numbers"},
+      {R"({"file": "a.obj", "radius": "2"})", "meshes[0].radius: ", "a finite number"},
+      {R"({"file": "a.obj", "radius": 2})", "scenes[0]: ", "instance 0: expected a mesh without a radius"},
+  };
+  for (const auto& c : cases) {
+    CAPTURE(c.mesh);
+    CHECK_THAT(files.refusalWith("/meshes/0", c.mesh), StartsWith(c.path) && Contains(c.problem));
+  }
 }

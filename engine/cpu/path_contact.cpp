@@ -103,8 +103,8 @@ bool PairPath::certainlyMeet(const Places& places) const {
 }
 
 void PathContact::setTolerance(double tolerance, double speed) {
-  tolerance_ = tolerance;
-  fine_ = speed > 0 ? std::min(0.5 * tolerance / speed, 1.0) : 1;
+  tolerance_ = 0.5 * tolerance;  // as a bracket may span two fine steps
+  fine_ = speed > 0 ? std::min(tolerance_ / speed, 1.0) : 1;
 }
 
 // Goes forward in steps: by as much of each as the triangles certainly stay apart.

@@ -68,8 +68,8 @@ class PathContact : public BracketedContact {
  private:
   bool counts(const exact::PlacedPair&) const override { return true; }
 
-  double tolerance_ = 0;
-  double fine_ = 1;  // s in which the sensor moves by half the tolerance
+  double tolerance_ = 0;  // half of the one that is asked for
+  double fine_ = 1;       // s in which the sensor moves by tolerance_
   double from_ = 0, to_ = 1;
 };
 

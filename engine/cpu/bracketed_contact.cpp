@@ -37,8 +37,9 @@ void BracketedContact::consider(const exact::PairName& name, const exact::Placed
   }
   if (near.isCertain() && !std::isnan(near.approach.atLo.normal[0])) across_ = near.approach.atLo.normal;
   atStart_ = near.approach.hi == 0;
-  // Of what meets at the start, the caller finds the pair to name.
-  decided_ = near.isCertain() && (query_.anyHit || (atStart_ && query_.hits == 1));
+  // Of what meets at the start, the caller finds the pair to name, but for a turn that may leave.
+  const bool isNamedHere = query_.turn && query_.ignoreLeaving;
+  decided_ = near.isCertain() && (query_.anyHit || (atStart_ && query_.hits == 1 && !isNamedHere));
   first_ = {name.object, 0, 0};
   // A later pair may have a bracket that begins before this one's, which then widens that of the answer.
   latest_ = std::min(latest_, near.approach.hi + tolerance_);

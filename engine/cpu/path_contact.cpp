@@ -98,7 +98,7 @@ TimeSpan PairPath::possible(const Places& begin, const Places& end, double lengt
 
 bool PairPath::certainlyMeet(const Places& places) const {
   const double rounding = unit_ * error_ + 0x1p-46;
-  if (clearance_ == 0) return exact::cross(places.a, places.b, 2 * rounding);
+  if (clearance_ == 0) return exact::cross(places.a, places.b, 2 * rounding + unit_ * slack_);
   return unit_ * clearance_ > rounding && certainlyWithin(places.a, places.b, {}, unit_ * clearance_ - rounding);
 }
 
@@ -107,15 +107,29 @@ void PathContact::setTolerance(double tolerance, double speed) {
   fine_ = speed > 0 ? std::min(tolerance_ / speed, 1.0) : 1;
 }
 
-// Goes forward in steps: by as much of each as the triangles certainly stay apart.
 std::optional<Approach> PathContact::bracket(const PairPath& pair) const {
+  if (pair.slack() == 0) return bracket(pair, 0);
+  // What is pressed together or rests is in contact without an end: first, whether it ever gets deep.
+  auto found = bracket(pair, std::max(kShallow * tolerance_, 2 * pair.slack()));
+  if (!found || found->hi == 0) return found;
+  if (const auto earlier = bracket(pair, 2 * pair.slack())) {
+    found->lo = std::min(found->lo, earlier->lo);
+    if (earlier->hi <= found->hi) found = Approach{found->lo, earlier->hi, earlier->atLo};
+  }
+  return found;
+}
+
+// Goes forward in steps: by as much of each as the triangles certainly stay apart, or get no deeper than `depth`.
+std::optional<Approach> PathContact::bracket(const PairPath& pair, double depth) const {
   // No finer than what rounding leaves.
   const double speed = pair.speed();
   const double fine = std::min(std::max({fine_, speed > 0 ? 8 * pair.error() / speed : 1.0, 0x1p-48}), 1.0);
   // In so short a step points bend off by less than they move in a fine one.
   const double straight = std::max(fine, std::sqrt(0.25 * fine * speed / std::max(pair.bend(), 0x1p-1000)));
   double lo = INFINITY;  // they have certainly not met before this
-  double depth = 0;      // once they may have touched, only what is deeper matters
+  PairPath::Start start = PairPath::Start::open;
+  if (from_ == 0 && pair.slack() > 0) start = pair.atStart();
+  if (start == PairPath::Start::meet) return Approach{0, 0, pair.separationAt(0)};
   double from = from_, step = to_ - from_;
   PairPath::Places begin = pair.at(from);
   const auto found = [&](double s) { return Approach{lo, s, pair.separationAt(lo)}; };
@@ -130,7 +144,8 @@ std::optional<Approach> PathContact::bracket(const PairPath& pair) const {
       step = std::max(4 * step, fine);
       continue;
     }
-    if (from == 0 && times.from == 0 && std::isinf(lo) && pair.meetAtStart()) {
+    if (from == 0 && times.from == 0 && std::isinf(lo) && pair.slack() == 0 &&
+        pair.atStart() == PairPath::Start::meet) {
       return Approach{0, 0, pair.separationAt(0)};
     }
     if (times.from > 0) {
@@ -147,6 +162,7 @@ std::optional<Approach> PathContact::bracket(const PairPath& pair) const {
     // Here they may meet.
     const double hi = std::min(from + fine, 1.0);
     if (pair.certainlyMeet(pair.at(hi))) {
+      if (start == PairPath::Start::rest && hi <= 2 * fine) return Approach{0, 0, pair.separationAt(0)};
       lo = std::min(lo, from);
       if (hi - lo <= 2 * fine) return found(hi);
       // Found after a touch that may have been none: the earliest time at which they certainly meet.
@@ -162,7 +178,8 @@ std::optional<Approach> PathContact::bracket(const PairPath& pair) const {
       continue;
     }
     lo = std::min(lo, from);
-    depth = kShallow * tolerance_;
+    // Once they may have touched, only what is deeper matters.
+    depth = std::max(depth, kShallow * tolerance_);
     if (end == to_) break;
     from = end;
     begin = last;

@@ -18,19 +18,22 @@ class PairPath {
     exact::Triangle a, b;
   };
   virtual Places at(double s) const = 0;
-  /// Whether they certainly are in contact at the start.
-  virtual bool meetAtStart() const { return certainlyMeet(at(0)); }
+  /// Whether they certainly are in contact at the start, or touch without a contact that counts.
+  enum class Start { open, meet, rest };
+  virtual Start atStart() const { return certainlyMeet(at(0)) ? Start::meet : Start::open; }
   /// In the world.
   virtual Separation separationAt(double s) const = 0;
 
   double error() const { return error_; }
   double speed() const { return speed_; }
   double bend() const { return bend_; }
+  /// How deep they may cross without a contact, world units; 0: touching is one.
+  double slack() const { return slack_; }
 
   /// Of a time of `length`, at whose ends they are at `begin` and `end`, the part in which they may be nearer than the
   /// clearance, less `depth`; of 1.
   TimeSpan possible(const Places& begin, const Places& end, double length, double depth) const;
-  /// Whether they certainly cross, or are nearer than the clearance.
+  /// Whether they certainly cross by more than the slack, or are nearer than the clearance.
   bool certainlyMeet(const Places& places) const;
 
  protected:
@@ -42,7 +45,7 @@ class PairPath {
   const double clearance_;
   // World units, in 1 of s: of a corner of a, relative to b. Error: of its place, and of times. Bend: off its straight
   // way, across `axis_`, or in any direction if that is 0.
-  double error_ = 0, speed_ = 0, bend_ = 0;
+  double error_ = 0, speed_ = 0, bend_ = 0, slack_ = 0;
   Vector axis_{};
   double unit_ = 1;
 };
@@ -67,6 +70,7 @@ class PathContact : public BracketedContact {
 
  private:
   bool counts(const exact::PlacedPair&) const override { return true; }
+  std::optional<Approach> bracket(const PairPath& pair, double depth) const;
 
   double tolerance_ = 0;  // half of the one that is asked for
   double fine_ = 1;       // s in which the sensor moves by tolerance_

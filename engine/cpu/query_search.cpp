@@ -52,6 +52,10 @@ struct QuerySearch::Task {
     const double slack = query.slack ? *query.slack : exact::defaultSlack(std::max(magnitude, farthest));
     return {slack, {mirrored, exact::isMirroring(object.worldFromMesh)}};
   }
+  /// How near pairs matter. Faces that are pressed together may have passed each other by the slack.
+  double reach(const PairRule& rule) const {
+    return std::max(query.clearance, query.ignoreLeaving ? 2 * rule.slack : 0);
+  }
 };
 
 Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists,
@@ -206,7 +210,7 @@ Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, con
   }
   Result first = finder.first();
   if (lists != nullptr) *lists = {finder.nearest(), {skipped.begin(), skipped.end()}, {}, {}};
-  if (first.status == Status::overlap) {
+  if (first.status == Status::overlap && !query.ignoreLeaving) {
     Query still = query;
     still.motion = Vector{};
     still.turn.reset();
@@ -230,10 +234,10 @@ void QuerySearch::searchTurning(const Task& task, ObjectId id, const TurnMotion&
   const Mesh& mesh = task.scene.meshes[object.mesh];
   if (finder.isBefore({id, mesh.tree.below[0].least, 0})) return;
   const MeshPlacement placement(mesh, object.worldFromMesh);
-  finder.beginObject(object.motion);
+  const PairRule rule = task.ruleFor(id);
+  finder.beginObject(rule, object.motion);
   const PlacedMesh sensor{task.sensor, task.query.worldFromMesh, task.placement};
-  PathPair pair =
-      pairOf(sensor, part, {mesh, object.worldFromMesh, placement}, id, object.motion, task.query.clearance);
+  PathPair pair = pairOf(sensor, part, {mesh, object.worldFromMesh, placement}, id, object.motion, task.reach(rule));
   pair.bendSeen = motion.bendSeen(part, object.motion);
   pair.axis = motion.turning().axis();
   meshes_.run(pair, finder, pairs_, *stop_);
@@ -295,9 +299,7 @@ void QuerySearch::search(const Task& task, ObjectId id, Finder& finder) {
   const PairRule rule = task.ruleFor(id);
   const Translation& motion = pastOf(task, id);
   finder.beginObject(rule, motion);
-  // Faces that are pressed together may have passed each other by the slack.
-  const double room = task.query.ignoreLeaving ? 2 * rule.slack : 0;
-  searchObject(task, id, task.placement, motion, std::max(task.query.clearance, room), finder);
+  searchObject(task, id, task.placement, motion, task.reach(rule), finder);
 }
 
 const Translation& QuerySearch::pastOf(const Task& task, ObjectId id) {

@@ -1,6 +1,7 @@
 #include "cpu/turn_contact.h"
 
 #include <cmath>
+#include <limits>
 
 namespace radar::cpu {
 
@@ -13,7 +14,10 @@ class TurnContact::Path final : public PairPath {
         start_(pair.a),
         resting_(pair.b),
         way_(minus(turning_.way(), contact.drift_)),
-        drift_(contact.drift_) {
+        drift_(contact.drift_),
+        mirrored_(contact.rule_.mirrored),
+        leaves_(contact.query_.ignoreLeaving) {
+    slack_ = leaves_ ? std::max(contact.rule_.slack, std::numeric_limits<double>::min()) : 0;
     double most = norm1(way_), arm = 0, radius = 0;
     for (int i = 0; i < 3; ++i) {
       const Vector r = minus(start_[i], turning_.centre());
@@ -45,12 +49,13 @@ class TurnContact::Path final : public PairPath {
     return out;
   }
   /// Exactly, without a clearance.
-  bool meetAtStart() const override {
-    if (clearance_ > 0 && certainlyWithin(start_, resting_, {}, clearance_)) return true;
+  Start atStart() const override {
+    if (leaves_) return beforeLeaving();
+    if (clearance_ > 0 && certainlyWithin(start_, resting_, {}, clearance_)) return Start::meet;
     const Translation still(Vector{}, {});
     exact::EarliestContact touching(still);
     touching.consider({}, {start_, resting_});
-    return touching.found();
+    return touching.found() ? Start::meet : Start::open;
   }
   Separation separationAt(double s) const override {
     const Turning::Angle angle = turning_.angleAt(s);
@@ -62,9 +67,23 @@ class TurnContact::Path final : public PairPath {
   }
 
  private:
+  // Faces that are pressed together block if all corners sink in, by their speeds over at most a radian.
+  Start beforeLeaving() const {
+    if (exact::cross(start_, resting_, slack_)) return Start::meet;
+    if (separationOf(start_, resting_).distance > slack_ + error_) return Start::open;
+    const double angle = turning_.angle();
+    for (const Turning::Circle& circle : circle_) {
+      const exact::Way way{along(way_, angle, circle.across), 1 / std::max(angle, 1.0), 1};
+      if (!exact::arePressed(start_, resting_, way, slack_, mirrored_)) return Start::rest;
+    }
+    return Start::meet;
+  }
+
   const Turning& turning_;
   const exact::Triangle &start_, &resting_;
   const Vector way_, drift_;
+  const exact::Mirrored mirrored_;
+  const bool leaves_;
   Turning::Circle circle_[3];
   exact::Triangle from_, b_;
 };

@@ -12,8 +12,9 @@ class TurnContact final : public PathContact {
   TurnContact(const Query& query, const TurnMotion& motion, double tolerance)
       : PathContact(query), motion_(motion), tolerance_(tolerance) {}
 
-  /// Before the pairs of an object, which moves by `way` during the step, and stays in place until the next one.
-  void beginObject(const Vector& way) {
+  /// Before the pairs of an object, which moves by `way` during the step. `rule`: as of FirstContact.
+  void beginObject(const PairRule& rule, const Vector& way) {
+    rule_ = rule;
     drift_ = way;
     setTolerance(tolerance_, motion_.speedPast(way));
   }
@@ -25,6 +26,7 @@ class TurnContact final : public PathContact {
   const TurnMotion& motion_;
   double tolerance_;
   Vector drift_{};  // of the object
+  PairRule rule_;
 };
 
 }  // namespace radar::cpu

@@ -38,7 +38,9 @@ std::string validateTurn(const Query& query) {
   for (const double value : query.motion.value_or(Vector{})) {
     if (!(std::abs(value) <= kMostCentre)) return "expected a motion up to 2^800 beside it, got " + textOf(value);
   }
-  if (query.ignoreLeaving && turn.angle != 0) return "expected no ignoreLeaving beside it";
+  if (query.ignoreLeaving && query.clearance > 0 && turn.angle != 0) {
+    return "expected no ignoreLeaving beside it and a clearance";
+  }
   return {};
 }
 

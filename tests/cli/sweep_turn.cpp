@@ -103,7 +103,8 @@ TEST_CASE("sweep refuses what is no turn, and what does not go with one, by the 
         std::pair{"--turn 0 0 1 1 --direction 0 0 1", "--distance: expected a number, got none"},
         std::pair{"--turn 0 0 1 1 --direction 0 0 1 --distance 1e300", "--distance: expected at most 2^800"},
         std::pair{"--turn 0 0 1 1 --speed 2", "--speed: expected none beside --turn"},
-        std::pair{"--turn 0 0 1 1 --ignore-leaving", "--ignore-leaving: expected none beside --turn"},
+        std::pair{"--turn 0 0 1 1 --ignore-leaving --clearance 1",
+                  "--ignore-leaving: expected none beside --turn and a clearance"},
         std::pair{"--turn 0 0 1 1 --mode sampled", "--mode: expected contact or reference, as \"turn\""}}) {
     checkRefused(folder, std::string("sweep post.obj rod.obj ") + options, words);
   }

@@ -162,7 +162,6 @@ def test_turns_are_arrays_beside_motions_or_alone(tmp_path):
         ("motion", np.full((9, 3), 1e250), "q.npy: motion[0]: expected numbers of at most 2^800 beside a turn"),
         ("D", np.zeros(9), 'q.npy: turn_angle: expected either "dir" and "D" or "turn_angle", got both'),
         ("speed", np.ones(9), "q.npy: speed[0]: expected none beside a turn"),
-        ("ignore_leaving", np.ones(9, bool), "q.npy: ignore_leaving[0]: expected none beside a turn"),
         ("mode", np.zeros(9, np.uint8), 'q.npy: mode[0]: expected contact or reference, as "turn" needs'),
     ],
 )  # fmt: skip

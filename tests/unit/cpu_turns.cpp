@@ -356,7 +356,10 @@ TEST_CASE("a turn that says nothing, or goes with what does not, is refused by n
   CHECK(wrong([](Query& q) { q.turn->axis[1] = NAN; }) == "turn: expected an axis of 3 finite numbers, got nan");
   CHECK(wrong([](Query& q) { q.turn->angle = 1e6; }) == "turn: expected a finite angle of at most 2^16, got 1e+06");
   CHECK(wrong([](Query& q) { q.turn->centre[2] = INFINITY; }) == "turn: expected a centre up to 2^800, got inf");
-  CHECK(wrong([](Query& q) { q.ignoreLeaving = true; }) == "turn: expected no ignoreLeaving beside it");
+  CHECK(wrong([](Query& q) {
+          q.ignoreLeaving = true;
+          q.clearance = 1;
+        }) == "turn: expected no ignoreLeaving beside it and a clearance");
   CHECK(wrong([](Query& q) { q.distance = 1; }) == "turn: expected no direction and no distance beside it");
   CHECK(wrong([](Query& q) { q.motion = {0, NAN, 0}; }).starts_with("turn: expected a motion up to 2^800"));
   CHECK(validate(good, scene, Mode::sampled).starts_with("mode: expected contact"));

@@ -64,7 +64,6 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
            {"/queries/0/turn/angle", "7e4", "queries[0].turn.angle: ", "2^16"},
            {"/queries/0/turn/centre", "[0, 1e300, 0]", "queries[0].turn.centre[1]: ", "2^800"},
            {"/queries/0/motion", "[0, 0, 1e250]", "queries[0].motion[2]: ", "2^800 beside \"turn\""},
-           {"/queries/0/ignore_leaving", "true", "queries[0].ignore_leaving: ", "turn"},
            {"/queries/0/speed", "2", "queries[0].speed: ", "turn"},
            {"/queries/0/motion", "[0, 1e305, 0]", "queries[0].motion[1]: ", "2^1000"},
            {"/queries/1/D", "1e305", "queries[1].D: ", ""},

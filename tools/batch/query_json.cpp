@@ -186,10 +186,10 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
   }
   readFields(query, world.objectCount(spec.scene), spec);
   spec.clearance = withRadius(spec.clearance, world.meshes[spec.mesh].radius);
-  // A turn has no length, and goes into what it rests on in one place while it leaves it in another.
-  for (const auto& [key, isGiven] :
-       {std::pair{"speed", spec.speed.has_value()}, {"ignore_leaving", spec.ignoreLeaving}}) {
-    if (spec.turn && isGiven) query.member(key).refuse("expected none beside \"turn\"");
+  // A turn has no length.
+  if (spec.turn && spec.speed) query.member("speed").refuse("expected none beside \"turn\"");
+  if (spec.turn && spec.ignoreLeaving && spec.clearance > 0) {
+    query.member("ignore_leaving").refuse("expected none beside \"turn\" and a clearance");
   }
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();

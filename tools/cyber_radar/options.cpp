@@ -252,7 +252,9 @@ void SweepOptions::setTurn(QuerySpec& query) const {
     }
   }
   if (query.speed) throw InputError("--speed", "", "expected none beside --turn");
-  if (query.ignoreLeaving) throw InputError("--ignore-leaving", "", "expected none beside --turn");
+  if (query.ignoreLeaving && query.clearance > 0) {
+    throw InputError("--ignore-leaving", "", "expected none beside --turn and a clearance");
+  }
   if (query.distance == 0) {
     query.direction = {};
     return;

@@ -61,7 +61,8 @@ struct Query {
   /// answers: t, a fraction of the step, is lo, before which surfaces certainly have no point in common, and at hi they
   /// certainly cross (with a clearance, are nearer). (hi - lo) times the greatest speed of the sensor past the object
   /// is at most `tolerance`, where a contact gets deeper than that. One that does not may be undecided, as may one
-  /// within rounding of the end. Contact at the start is exact. Not with `ignoreLeaving`.
+  /// within rounding of the end. Contact at the start is exact. Not with `ignoreLeaving` and a clearance at once;
+  /// docs/query-file.md, "Options together", tells what blocks a turn.
   std::optional<Turn> turn{};
 
   /// Mode contact: counts only pairs of triangles that block, as placed at the start. A pair does not block if a plane

@@ -285,7 +285,7 @@ class Scene:
         distances: (...) how far to go; displacements then give the direction alone.
         turns: axes (..., 3), angles (...), radians, and centres (..., 3), or Turns: meanwhile the mesh turns, by the
             right-hand rule, about an axis through the centre, which goes by the displacement. t, lo and hi are then
-            fractions of the step. turn_between() makes them of poses. Not with distances, ignore_leaving or mode
+            fractions of the step. turn_between() makes them of poses. Not with distances or mode
             "sampled".
         exclude_from_each: (..., K) ids of objects to ignore, a row for each cast; -1 is none. ids[:, None] is one each.
         mask: (...) 32 bits; an object takes part if its mask shares one.
@@ -340,9 +340,8 @@ class Scene:
             arrays["distances"] = (reals(distances, "distances"), 0)
         if turns is not None:
             arrays |= turn_arrays(turns)
-            for name, is_given in (("distances", distances is not None), ("ignore_leaving", options["ignore_leaving"])):
-                if is_given:
-                    raise ValueError(f"{name}: expected none with turns")
+            if distances is not None:
+                raise ValueError("distances: expected none with turns")
             if mode == "sampled":
                 raise ValueError('mode: expected "contact" or "reference" with turns, got "sampled"')
         if mode == "sampled":

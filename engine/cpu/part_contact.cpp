@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu/parting_plane.h"
 #include "math/rounding.h"
 
 namespace radar::cpu {
@@ -41,10 +42,13 @@ class FirstTouch {
   }
 
   void find();
-  void offerNormal(const Vector& n) {
-    free_.add(motion_, n, std::min({dot(n, corners_[0]), dot(n, corners_[1]), dot(n, corners_[2])}), error_);
-  }
+  /// Looks for a plane that parts all of the way, where touches alone leave contact open.
+  void part() { addPartingPlanes(motion_, corners_, error_, latest_, free_); }
+  void offerNormal(const Vector& n) { free_.add(motion_, n, corners_, error_); }
   bool isFree() const { return free_.isFreeUntil(latest_); }
+  bool isNarrow() const {
+    return met < kNever && met - free_.until() <= 1e-12 * (std::abs(met) + error_ / (kUnit * fastest_));
+  }
   const FreeTimes& free() const { return free_; }
 
   double met = kNever;  ///< they certainly meet then
@@ -154,8 +158,9 @@ void FirstTouch::meetCorner(int k) {
 class EdgeTouch {
  public:
   /// `from`: a point of the edge; `edge`, of length 1, is not along the way.
-  EdgeTouch(const RingHull& hull, const Vector& from, const Vector& edge, const Vector& way)
-      : hull_(hull), from_(from), edge_(edge), way_(way) {
+  /// `error`: by less than this a line that misses the hull may seem to touch it.
+  EdgeTouch(const RingHull& hull, const Vector& from, const Vector& edge, const Vector& way, double error)
+      : hull_(hull), from_(from), edge_(edge), way_(way), error_(error) {
     forward_ = way;
     for (int i = 0; i < 2; ++i) {  // the first may lose most digits
       const Vector rest = along(forward_, -dot(forward_, edge), edge);
@@ -164,7 +169,7 @@ class EdgeTouch {
     aside_ = radar::cross(edge, forward_);
     at_ = dot(aside_, from);
     flat_ = std::sqrt(flatDot(aside_, aside_));
-    if (!(at_ < hull.support(aside_) && -at_ < hull.support(scaled(-1, aside_)))) return;
+    if (!(at_ < hull.support(aside_) + error && -at_ < hull.support(scaled(-1, aside_)) + error)) return;
     // Each normal is a bound, and the true one is among them.
     for (size_t i = 0; i < hull.rings().size(); ++i) offerRing(i);
     for (const RingHull::Side& side : hull.sides()) {
@@ -189,7 +194,8 @@ class EdgeTouch {
   void offer(const Vector& n, By by, size_t lower = 0, size_t upper = 0) {
     const double speed = dot(n, way_);
     if (!(speed > 0)) return;
-    const double t = (dot(n, from_) - hull_.support(n)) / speed;
+    // As much less as rounding may make of it where the way is almost along the plane.
+    const double t = (dot(n, from_) - hull_.support(n) - lengthOf(n) * error_) / speed;
     if (!(t > t_)) return;
     t_ = t;
     normal_ = n;
@@ -206,6 +212,7 @@ class EdgeTouch {
 
   const RingHull& hull_;
   const Vector &from_, &edge_, &way_;
+  double error_;
   Vector forward_{}, aside_{};  // across the edge: normals are of these, with a positive share of the first
   double at_ = 0, flat_ = 0;
   double t_ = -kNever;
@@ -224,7 +231,8 @@ void EdgeTouch::offerRing(size_t index) {
     const double x = aside_[0] / flat_, y = aside_[1] / flat_;
     for (const double sign : {1.0, -1.0}) {
       const Vector tangent{-(share * y + sign * rest * x), share * x - sign * rest * y, 0};
-      const Vector n = radar::cross(edge_, tangent);
+      Vector n = radar::cross(edge_, tangent);
+      n = along(n, -dot(n, edge_), edge_);
       offer(dot(n, way_) < 0 ? scaled(-1, n) : n, By::ring);
     }
     return;
@@ -299,10 +307,13 @@ void FirstTouch::meetEdge(int k) {
     meetCorner(k);
     return meetCorner((k + 1) % 3);
   }
-  const EdgeTouch touch(hull_, from, edge, way_);
+  const EdgeTouch touch(hull_, from, edge, way_, error_);
   if (!touch.isFound()) {
     offerNormal(touch.aside());
-    return offerNormal(scaled(-1, touch.aside()));
+    offerNormal(scaled(-1, touch.aside()));
+    if (isFree()) return;
+    meetCorner(k);
+    return meetCorner((k + 1) % 3);
   }
   offerNormal(touch.normal());
   if (isFree()) return;
@@ -360,7 +371,7 @@ void FirstTouch::find() {
       if ((which >> k & 1) != 0) meetEdge(k);
       if (isFree()) return;
     }
-    if (met < kNever && met - free_.until() <= 1e-12 * (std::abs(met) + error_ / (kUnit * fastest_))) return;
+    if (isNarrow()) return;
   }
 }
 
@@ -384,6 +395,7 @@ std::optional<PartContact> contactOf(const HullMotion& motion, const exact::Tria
                                      double latest) {
   FirstTouch touch(motion, corners, error, latest);
   touch.find();
+  if (!touch.isFree() && !(touch.met <= latest) && !touch.isNarrow()) touch.part();
   if (touch.isFree()) return std::nullopt;
   PartContact out{touch.free().until(), touch.met, touch.weights, touch.free().normal()};
   if (out.hi <= 0) {
@@ -392,6 +404,7 @@ std::optional<PartContact> contactOf(const HullMotion& motion, const exact::Tria
     FirstTouch last(back, corners, error, kNever);
     last.find();
     touch.offerNormal(last.free().normal());
+    if (!touch.isFree() && last.met > 0) touch.part();
     if (touch.isFree()) return std::nullopt;
     out.lo = 0;
     out.hi = last.met <= 0 ? 0 : kNever;

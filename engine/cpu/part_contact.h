@@ -1,6 +1,7 @@
 // When a convex part of a cutter first touches a triangle, in the cutter's frame.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -26,6 +27,10 @@ class FreeTimes {
   /// A plane across `n`, from the hull towards the other, at the start farther by `least` along n than the frame's
   /// origin; the other is within it but for `error`, a distance.
   void add(const HullMotion& motion, const Vector& n, double least, double error);
+  /// The same for a triangle whose corners are off by at most `error` each.
+  void add(const HullMotion& motion, const Vector& n, const exact::Triangle& corners, double error) {
+    add(motion, n, std::min({dot(n, corners[0]), dot(n, corners[1]), dot(n, corners[2])}), error);
+  }
 
  private:
   double until_ = 0, after_ = std::numeric_limits<double>::infinity();

@@ -44,15 +44,15 @@ Cutter bullNoseCutter(double radius, double corner, double length) {
   requireLength("bullNoseCutter", "radius", radius);
   requireLength("bullNoseCutter", "corner", corner);
   require(corner <= radius, "bullNoseCutter", "corner: expected at most the radius", corner);
-  require(length >= corner && length <= kMostLength, "bullNoseCutter",
-          "length: expected at least the corner, at most 2^100", length);
+  require(length >= 2 * corner && length <= kMostLength, "bullNoseCutter",
+          "length: expected at least twice the corner, at most 2^100", length);
   return {{{{corner, radius - corner, corner}, {length, radius}}}};
 }
 
 Cutter ballCutter(double radius, double length) {
   requireLength("ballCutter", "radius", radius);
-  require(length >= radius && length <= kMostLength, "ballCutter",
-          "length: expected at least the radius, at most 2^100", length);
+  require(length >= 2 * radius && length <= kMostLength, "ballCutter",
+          "length: expected at least twice the radius, at most 2^100", length);
   return bullNoseCutter(radius, radius, length);
 }
 
@@ -70,7 +70,9 @@ Cutter taperCutter(double radius, double angle, double tipRadius, double length)
           "tipRadius: expected less than " + textOf(radius * std::cos(angle)) + ", so that the cone is wider",
           tipRadius);
   const double top = tipRadius + (radius - tipRadius / std::cos(angle)) / std::tan(angle);
-  require(length >= top, "taperCutter", "length: expected at least " + textOf(top) + ", where the cone ends", length);
+  const double least = std::max(top, 2 * tipRadius);
+  require(length >= least, "taperCutter",
+          "length: expected at least " + textOf(least) + ", where the cone and the ball end", length);
   return {{{{tipRadius, 0, tipRadius}, {top, radius}, {length, radius}}}};
 }
 

@@ -65,7 +65,7 @@ def test_what_cutters_cannot_do_is_refused_by_name(scene):
     for call, problem in (
         (lambda: scene.add(mesh), "is a cutter"),
         (lambda: flat(0, 5), "flatCutter: radius"),
-        (lambda: ball_cutter(1, 0.5), "at least the radius"),
+        (lambda: ball_cutter(1, 1.5), "at least twice the radius"),
         (lambda: tool.with_holder([(1,)]), "ring: expected"),
     ):
         with pytest.raises((ValueError, cyber_radar.Error), match=problem):

@@ -78,7 +78,7 @@ TEST_CASE("a shape that breaks its contract is refused with its path, what was e
       {R"({"shape": "flat", "radius": 1})", "meshes[0]: ", "\"length\", which is missing"},
       {R"({"shape": "flat", "radius": 1, "length": 9, "corner": 1})",
        "meshes[0]: ", "\"corner\": expected none in a flat"},
-      {R"({"shape": "ball_cutter", "radius": 2, "length": 1})", "meshes[0]: ", "length: expected at least the radius"},
+      {R"({"shape": "ball_cutter", "radius": 2, "length": 1})", "meshes[0]: ", "length: expected at least twice the radius"},
       {R"({"shape": "flat", "radius": 2, "length": 1, "holder": [[[1]]]})",
        "meshes[0].holder[0][0]: ", "2 or 3 numbers"},
       {R"({"shape": "capsule", "from": [0,0,0], "to": [0,1e39,0], "radius": 1})", "meshes[0].to[1]: ", "floats hold"},

@@ -6,34 +6,15 @@
 
 #include "radar/cpu_sweeper.h"
 #include "support/catch.h"
+#include "support/real_points.h"
 #include "workloads/random.h"
 
 using namespace radar;
+using namespace radar::test;
 using tools::Random;
 using tools::Vec3;
 
 namespace {
-
-using Real = long double;
-using Point = std::array<Real, 3>;
-
-constexpr Real kNever = INFINITY;
-
-Point operator+(const Point& a, const Point& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Point operator*(Real s, const Point& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-Point operator-(const Point& a, const Point& b) {
-  return a + (-1) * b;
-}
-Real dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// The first t of 0 or more at which p + t d is within r of q, if it is not before.
 Real enters(const Point& p, const Point& d, const Point& q, Real r) {

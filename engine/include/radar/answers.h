@@ -31,7 +31,7 @@ struct RADAR_API Result {
   double fraction;          ///< t / D (0 if D is 0); of the step, if the query takes one
   ObjectId object = kNone;  ///< the object touched; in mode sampled, by the least of the pairs that it has found
   uint32_t triB = kNone;    ///< its triangle
-  uint32_t triA = kNone;    ///< the sensor's triangle
+  uint32_t triA = kNone;    ///< the sensor's triangle; of a cutter, its part, from 0
   uint32_t flags = 0;       ///< Flag: why a Recorder gave no answer; else 0
   /// The smallest features of the two triangles that contain every point at which they touch then, exactly; with a
   /// clearance, of the nearest points.

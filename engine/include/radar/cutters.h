@@ -30,14 +30,14 @@ struct Cutter {
 
 /// A cylinder.
 RADAR_API Cutter flatCutter(double radius, double length);
-/// A ball, and a cylinder up to `length`, which is at least the radius.
+/// A ball, and a cylinder up to `length`, which is at least twice the radius.
 RADAR_API Cutter ballCutter(double radius, double length);
-/// A cylinder whose lower rim is rounded by `corner`, which is at most the radius and the length.
+/// A cylinder whose lower rim is rounded by `corner`, which is at most the radius and half the length.
 RADAR_API Cutter bullNoseCutter(double radius, double corner, double length);
 /// A cone, and a cylinder up to `length`, where the cone ends at the latest. `angle`, radians, below pi/2: between the
 /// axis and the side. `tipRadius`: of the flat tip, less than `radius`; may be 0.
 RADAR_API Cutter coneCutter(double radius, double angle, double length, double tipRadius = 0);
-/// A ball of `tipRadius`, above it a cone that touches it, as of coneCutter, and a cylinder up to `length`.
+/// A ball of `tipRadius`, above it a cone that touches it, as of coneCutter, and a cylinder up to `length`, above both.
 RADAR_API Cutter taperCutter(double radius, double angle, double tipRadius, double length);
 
 }  // namespace radar

@@ -17,7 +17,7 @@ class Cutter:
     cone() and taper() make. Casts move it (Scene.cast, Scene.add_mesh), with poses that are rigid to 1e-6; objects and
     links of chains cannot be cutters. The CPU answers, whatever the mode, which cannot be "sampled".
 
-    A cast's `tri_a` is the number of the part that touches, `point` is where the object is touched, and `t` is as exact
+    A cast's `tri_a` is the number of the part that touches, 0 for the cutting end, `point` is where the object is touched, and `t` is as exact
     as rounding allows; what passes at no distance, to rounding, may be UNDECIDED. A clearance grows the solid by a ball;
     ignore_leaving, skip_overlapping and turns are refused.
     """
@@ -62,12 +62,12 @@ def flat(radius: float, length: float) -> Cutter:
 
 
 def ball_cutter(radius: float, length: float) -> Cutter:
-    """A ball, and a cylinder up to `length`, which is at least the radius."""
+    """A ball, and a cylinder up to `length`, which is at least twice the radius."""
     return _cutter("ball", radius=radius, length=length)
 
 
 def bull_nose(radius: float, corner: float, length: float) -> Cutter:
-    """A cylinder whose lower rim is rounded by `corner`, which is at most the radius and the length."""
+    """A cylinder whose lower rim is rounded by `corner`, which is at most the radius and half the length."""
     return _cutter("bull_nose", radius=radius, corner=corner, length=length)
 
 
@@ -78,5 +78,6 @@ def cone(radius: float, angle: float, length: float, tip_radius: float = 0) -> C
 
 
 def taper(radius: float, angle: float, tip_radius: float, length: float) -> Cutter:
-    """A ball of `tip_radius`, above it a cone that touches it, as of cone(), and a cylinder up to `length`."""
+    """A ball of `tip_radius`, above it a cone that touches it, as of cone(), and a cylinder up to `length`, where both
+    have ended."""
     return _cutter("taper", radius=radius, angle=angle, tip_radius=tip_radius, length=length)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cpu/bracketed_contact.h"
+#include "cpu/node_gap.h"
 #include "query/swept.h"
 
 namespace radar::cpu {
@@ -43,7 +44,9 @@ class NodeTimes {
   /// normal that may tell, or 0.
   double operator()(const gpu::MeshNode& node, const Vector& known, double latest) const {
     FreeTimes free;
-    const auto add = [&](const Vector& n) { free.add(motion_, n, leastAlong(n, node), error_); };
+    const auto add = [&](const Vector& n) {
+      free.add(motion_, n, dot(n, offset_) - topAlong(node, linear_, scaled(-1, n)), error_);
+    };
     if (known != Vector{}) add(known);
     Vector middle = offset_, half{};
     for (int i = 0; i < 3; ++i) {
@@ -67,19 +70,6 @@ class NodeTimes {
   }
 
  private:
-  /// The least n . x of a node: by its box, or by its slab and the rest of its box.
-  double leastAlong(const Vector& n, const gpu::MeshNode& node) const {
-    const Vector m = transposed(linear_, n);
-    const double slope = m[0] * node.normal[0] + m[1] * node.normal[1] + m[2] * node.normal[2];
-    double box = 0, slab = slope * node.slabMiddle - std::abs(slope) * node.slabHalf;
-    for (int k = 0; k < 3; ++k) {
-      const double rest = m[k] - slope * node.normal[k];
-      box += m[k] * node.centre[k] - std::abs(m[k]) * node.halfExtent[k];
-      slab += rest * node.centre[k] - std::abs(rest) * node.halfExtent[k];
-    }
-    return dot(n, offset_) + std::max(box, slab);
-  }
-
   const HullMotion& motion_;
   const Matrix3& linear_;
   const Vector& offset_;

@@ -11,23 +11,6 @@ namespace {
 constexpr int kMostDirections = 3;
 constexpr double kLittle = 0x1p-4;
 
-/// Bound on n . x for all points x of a node, relative to the origin of the mesh: as of its box, or of its slab and
-/// of the rest of its box.
-double top(const gpu::MeshNode& node, const Matrix3& linear, const Vector& n) {
-  double box = 0, slab = 0, along = 0;
-  Vector m;
-  for (int k = 0; k < 3; ++k) {
-    m[k] = n[0] * linear[0][k] + n[1] * linear[1][k] + n[2] * linear[2][k];
-    along += m[k] * node.normal[k];
-  }
-  for (int k = 0; k < 3; ++k) {
-    const double rest = m[k] - along * node.normal[k];
-    box += m[k] * node.centre[k] + std::abs(m[k]) * node.halfExtent[k];
-    slab += rest * node.centre[k] + std::abs(rest) * node.halfExtent[k];
-  }
-  return std::min(box, slab + along * node.slabMiddle + std::abs(along) * node.slabHalf);
-}
-
 }  // namespace
 
 void GapTest::set(const Vector& n, double distance, double latest) {
@@ -59,7 +42,7 @@ NodeGap::Boxes NodeGap::boxesOf(const gpu::MeshNode& a, const gpu::MeshNode& b) 
 
 // PairMotion::rounding holds 32 ulp of all that is summed here.
 double NodeGap::heightAlong(const Vector& n, const gpu::MeshNode& a, const gpu::MeshNode& b) const {
-  return dot(n, motion_.gap) - top(a, a_.linear, scaled(-1, n)) - top(b, b_.linear, n) -
+  return dot(n, motion_.gap) - topAlong(a, a_.linear, scaled(-1, n)) - topAlong(b, b_.linear, n) -
          2 * reachAlong(n, motion_.rounding);
 }
 

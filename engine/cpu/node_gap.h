@@ -2,10 +2,30 @@
 // let pass what is up to 1.7 clearances away along a diagonal.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "cpu/pair_motion.h"
 #include "query/near_walk.h"
 
 namespace radar::cpu {
+
+/// Bound on n . x for all points x of a node, relative to the origin of the mesh: as of its box, or of its slab and
+/// of the rest of its box.
+inline double topAlong(const gpu::MeshNode& node, const Matrix3& linear, const Vector& n) {
+  double box = 0, slab = 0, along = 0;
+  Vector m;
+  for (int k = 0; k < 3; ++k) {
+    m[k] = n[0] * linear[0][k] + n[1] * linear[1][k] + n[2] * linear[2][k];
+    along += m[k] * node.normal[k];
+  }
+  for (int k = 0; k < 3; ++k) {
+    const double rest = m[k] - along * node.normal[k];
+    box += m[k] * node.centre[k] + std::abs(m[k]) * node.halfExtent[k];
+    slab += rest * node.centre[k] + std::abs(rest) * node.halfExtent[k];
+  }
+  return std::min(box, slab + along * node.slabMiddle + std::abs(along) * node.slabHalf);
+}
 
 /// Tells nodes that stay farther apart than a distance, by their extents along a normal.
 class GapTest {

@@ -1,10 +1,13 @@
 """Cutters in Python: where they stop, and what they are refused for."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import at
+from conftest import at, same_answers
 from cyber_radar import Feature, Status, ball_cutter, bull_nose, cone, flat, taper
 
 
@@ -52,12 +55,25 @@ def test_equal_cutters_share_a_mesh(scene):
     assert len(scene.meshes) == meshes
 
 
+def test_a_pickled_scene_keeps_cutters_and_their_ids(scene):
+    gone, tool = scene.add_mesh(ball_cutter(2, 9)), scene.add_mesh(bull_nose(1, 0.5, 5).with_holder([(5, 3), (9, 3)]))
+    scene.remove_mesh(gone)
+    again = pickle.loads(pickle.dumps(copy.deepcopy(scene)))
+    assert again.meshes == scene.meshes == [0, tool]
+    places = [[-0.8, 1, 5], [-2.5, 1, 3], [1, 1, -1]]  # the rim, the holder, a plate that the solid encloses
+    for casts in (fall(scene, tool, places), fall(again, tool, places)):
+        assert casts.tri_a.tolist() == [0, 1, 0] and casts.status.tolist() == [Status.HIT, Status.HIT, Status.OVERLAP]
+        assert same_answers(casts, fall(scene, tool, places))
+
+
 def test_what_cutters_cannot_do_is_refused_by_name(scene):
     tool = flat(1, 5)
     mesh = scene.add_mesh(tool)
     for casts, problem in (
         (fall(scene, tool, [1, 1, 5], mode="sampled"), "expected contact with a cutter"),
-        (fall(scene, tool, [1, 1, 5], ignore_leaving=True), "with a cutter"),
+        (fall(scene, tool, [1, 1, 5], ignore_leaving=True), "ignore_leaving: expected none with a cutter"),
+        (fall(scene, tool, [1, 1, 5], skip_overlapping=True), "skip_overlapping: expected none with a cutter"),
+        (fall(scene, tool, [1, 1, 5], closest=True), "closest: expected none with a cutter"),
         (scene.cast(tool, np.diag([2.0, 2.0, 2.0, 1.0]), [0, 0, 1]), "expected a rigid pose"),
     ):
         assert casts.status == Status.INVALID
@@ -66,7 +82,11 @@ def test_what_cutters_cannot_do_is_refused_by_name(scene):
         (lambda: scene.add(mesh), "is a cutter"),
         (lambda: flat(0, 5), "flatCutter: radius"),
         (lambda: ball_cutter(1, 1.5), "at least twice the radius"),
-        (lambda: tool.with_holder([(1,)]), "ring: expected"),
+        (lambda: tool.with_holder([(1, 2), (1,)]), r"parts\[1\]\[1\]: expected \(height, radius\) or"),
+        (lambda: tool.with_holder([(1, "2")]), r"parts\[1\]\[0\]: expected numbers"),
+        (lambda: tool.with_holder(5), "parts: expected sequences of rings"),
+        (lambda: cyber_radar.Cutter("flat"), r"parts\[0\]\[0\]: expected"),
+        (lambda: scene.add_mesh(tool, [[0, 1, 2]]), "faces: expected none with a Cutter"),
     ):
         with pytest.raises((ValueError, cyber_radar.Error), match=problem):
             call()

@@ -15,7 +15,7 @@ import pytest
 
 import cyber_radar
 from conftest import FACES, box
-from cyber_radar import _chain, _engine, _scene, _turns
+from cyber_radar import _chain, _cutters, _engine, _scene, _shapes, _turns
 
 ROOT = pathlib.Path(__file__).parents[2]
 PACKAGE = pathlib.Path(cyber_radar.__file__).parent
@@ -51,7 +51,7 @@ def prints_what_it_says(script: str, folder: pathlib.Path, command: list[str]) -
     assert expected
 
 
-@pytest.mark.parametrize("module", [_chain, _scene, _turns])
+@pytest.mark.parametrize("module", [_chain, _cutters, _scene, _shapes, _turns])
 def test_doctests(module):
     results = doctest.testmod(module, extraglobs={"np": np})
     assert results.attempted >= 4 and results.failed == 0

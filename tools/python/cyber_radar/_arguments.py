@@ -14,16 +14,21 @@ from ._warnings import RoundingWarning, warn
 
 Mode = Literal["contact", "sampled", "reference"]
 MOST_ID = 2**32 - 2
+_FLAGS = ("any_hit", "ignore_leaving", "skip_overlapping", "closest", "exit")
 _OF_EACH = ("ignore_leaving", "slack", "clearance", "tolerance", "hits")  # options that may differ from cast to cast
 
 
 def cast_option(value: Any, name: str) -> bool | float | str | None:
     """One value for all casts, whose range the compiled half checks."""
-    if isinstance(value, np.bool_):
+    if name in _FLAGS:
+        return one_flag(value, name)
+    return value if value is None or isinstance(value, (bool, str)) else one_number(value, name)
+
+
+def one_flag(value: Any, name: str) -> bool:
+    if isinstance(value, bool) or (getattr(value, "dtype", None) == np.bool_ and np.ndim(value) == 0):
         return bool(value)
-    if value is None or isinstance(value, (bool, str)):
-        return value
-    return one_number(value, name)
+    raise ValueError(f"{name}: expected True or False, got {value!r}")
 
 
 def one_number(value: Any, name: str) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _engine
-from ._arguments import one_number, one_whole_number
+from ._arguments import one_flag, one_number, one_whole_number
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals
 from ._asked import Asked
 from ._casts import Answers
@@ -164,10 +164,8 @@ class Chain:
         bases = arrays["base"][0]
         if bases.ndim > 2:
             bases = np.broadcast_to(bases, (*shape, 4, 4)).reshape(count, 4, 4)
-        if not isinstance(any_hit, (bool, np.bool_)):
-            raise ValueError(f"any_hit: expected True or False, got {any_hit!r}")
         options = {
-            "any_hit": bool(any_hit),
+            "any_hit": one_flag(any_hit, "any_hit"),
             "mask": one_whole_number(mask, "mask", LEAST_MASK, MOST_MASK),
             "clearance": _length(clearance, "clearance"),
             "tolerance": None if tolerance is None else _length(tolerance, "tolerance"),

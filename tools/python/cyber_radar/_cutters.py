@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from . import _engine
 from ._arguments import one_number
+from ._arrays import reals
 
 Ring = Sequence[float]
 
@@ -23,28 +24,34 @@ class Cutter:
     """
 
     parts: tuple[tuple[tuple[float, float, float], ...], ...]
-    """Of each convex part its rings (height, radius, corner): circles about the axis, rounded by a ball; part 0 cuts."""
+    """Of each convex part its rings (height, radius) or (height, radius, corner): circles about the axis, rounded by a
+    ball; part 0 cuts."""
+
+    def __post_init__(self) -> None:
+        try:
+            parts = [list(part) for part in self.parts]
+        except TypeError:
+            raise ValueError(f"parts: expected sequences of rings, got {self.parts!r}") from None
+        rings = (tuple(_ring(ring, f"parts[{p}][{r}]") for r, ring in enumerate(part)) for p, part in enumerate(parts))
+        object.__setattr__(self, "parts", tuple(rings))
 
     def with_holder(self, *parts: Sequence[Ring]) -> Cutter:
         """The same with shanks and holders above: each the convex hull of its rings (height, radius) or (height, radius,
         corner). `flat(3, 20).with_holder([(20, 2), (50, 2)], [(50, 15), (80, 20)])`"""
-        return Cutter(self.parts + tuple(tuple(_ring(ring) for ring in part) for part in parts))
-
-    def rings(self) -> list[list[tuple[float, float, float]]]:
-        """The parts as lists."""
-        return [list(part) for part in self.parts]
+        return Cutter((*self.parts, *parts))  # type: ignore[arg-type]
 
 
-def _ring(ring: Ring) -> tuple[float, float, float]:
-    if not 2 <= len(ring) <= 3:
-        raise ValueError(f"ring: expected (height, radius) or (height, radius, corner), got {len(ring)} numbers")
-    height, radius, corner = (one_number(value, "ring") for value in (*ring, 0.0)[:3])
+def _ring(ring: Ring, name: str) -> tuple[float, float, float]:
+    numbers = reals(ring, name)
+    if numbers.shape not in ((2,), (3,)):
+        raise ValueError(f"{name}: expected (height, radius) or (height, radius, corner), got {ring!r}")
+    height, radius, corner = (*numbers.tolist(), 0.0)[:3]
     return height, radius, corner
 
 
 def _cutter(kind: str, **numbers: float) -> Cutter:
     values = [one_number(value, name) for name, value in numbers.items()]
-    return Cutter(tuple(tuple(tuple(ring) for ring in part) for part in _engine.Scene.cutter_rings(kind, values)))
+    return Cutter(_engine.Scene.cutter_rings(kind, values))  # type: ignore[arg-type]
 
 
 def flat(radius: float, length: float) -> Cutter:

@@ -91,6 +91,7 @@ class Scene:
         )
         self._names: dict[int, str] = {}
         self._shapes: dict[tuple[Any, ...], int] = {}  # meshes of those that casts were given
+        self._cutters: dict[int, Cutter] = {}
         self._lock = threading.Lock()
         self._user: int | None = None  # the thread that holds the lock
         self._is_lost = False  # to a thread of the process that forked this one
@@ -110,8 +111,12 @@ class Scene:
         flat(3, 50), which only casts move.
         """
         if isinstance(vertices, Cutter):
+            if faces is not None:
+                raise ValueError("faces: expected none with a Cutter")
             with self._exclusive() as engine:
-                return engine.add_cutter(vertices.rings())
+                mesh = engine.add_cutter(vertices.parts)
+                self._cutters[mesh] = vertices
+                return mesh
         numbers, corners = mesh_arrays(vertices, faces)
         floats, base = about_base(numbers, corners)
         radius = vertices.radius if isinstance(vertices, Shape) else 0.0
@@ -150,10 +155,12 @@ class Scene:
             if (engine.objects()[1] == number).any():
                 raise ValueError(f"mesh: expected a mesh that no object uses, got {number}")
             engine.remove_mesh(number)
+            self._cutters.pop(number, None)
             self._shapes = {key: mesh for key, mesh in self._shapes.items() if mesh != number}
 
     def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32] | npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
-        """A copy of a mesh: vertices (N, 3), float64 if float32 cannot hold them, and faces (M, 3)."""
+        """A copy of a mesh: vertices (N, 3), float64 if float32 cannot hold them, and faces (M, 3). Of a Cutter, what pages
+        draw of it."""
         with self._reading() as engine:
             vertices, faces, base = engine.mesh(self._known_mesh(mesh))
         return vertices_at(base, vertices), faces
@@ -397,6 +404,7 @@ class Scene:
             return {
                 "settings": self._settings,
                 "meshes": {mesh: (*engine.mesh(mesh), float(engine.radii()[mesh])) for mesh in engine.mesh_ids()},
+                "cutters": self._cutters,
                 "objects": engine.objects(),
                 "names": self._names,
             }
@@ -408,7 +416,10 @@ class Scene:
         # A new item gets the least free id: what is missing is added, too, and removed again.
         last_mesh = max(state["meshes"], default=-1)
         for mesh in range(last_mesh + 1):
-            self._engine.add_mesh(*state["meshes"].get(mesh, triangle))
+            if mesh in state["cutters"]:
+                self.add_mesh(state["cutters"][mesh])
+            else:
+                self._engine.add_mesh(*state["meshes"].get(mesh, triangle))
         if len(ids):
             count = int(ids[-1]) + 1
             rows = np.zeros(count, np.intp)

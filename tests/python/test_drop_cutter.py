@@ -120,7 +120,8 @@ def test_a_cutter_cuts_too_deep_at_no_point_of_its_path_and_neither_does_its_hol
     assert (above >= 0).all() and np.median(above) < 0.1
 
     def with_holder(above: float):
-        return lambda longer: tool.with_holder(drop_cutter.holder_of(8, above + longer, 0.0, 20))
+        options = argparse.Namespace(holder=[8, above], length=20)
+        return lambda longer: tool.with_holder(drop_cutter.holder_of(options, longer))
 
     first, held, longer = machine.hold(with_holder(5), path, 0.01)
     lowest = exact_heights(Profile(8, 8), corners, path[:, :2]) - 5

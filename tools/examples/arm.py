@@ -18,6 +18,7 @@ import time
 import numpy as np
 
 import cyber_radar
+from boxes import add_boxes
 from cyber_radar import Status
 
 # Links from the base up: name, the box's sides, and of the joint to the next one the axis and greatest angle. Each box
@@ -55,14 +56,7 @@ def add_shelves(scene: cyber_radar.Scene, rng: np.random.Generator) -> None:
             for x in np.arange(-0.7, 0.71, 0.2):
                 sides = rng.uniform(0.06, 0.17, 3)
                 boxes.append(((x, side + rng.uniform(-0.1, 0.1), height + 0.01 + sides[2] / 2), sides))
-    poses = np.zeros((len(boxes), 4, 4))
-    for pose, (middle, sides) in zip(poses, boxes):
-        pose[:] = np.diag([*sides, 1])
-        pose[:3, 3] = middle
-    corners = np.stack(np.meshgrid(*[(-0.5, 0.5)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    cube = scene.add_mesh(corners, [triangle for a, b, c, d in faces for triangle in ((a, b, c), (a, c, d))])
-    scene.add(cube, poses)
+    add_boxes(scene, boxes)
 
 
 def free_configurations(arm: cyber_radar.Chain, count: int, rng: np.random.Generator) -> np.ndarray:

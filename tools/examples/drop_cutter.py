@@ -30,6 +30,7 @@ from typing import Union
 
 import numpy as np
 
+import boxes
 import cyber_radar
 import tool_path
 from closed_forms import Profile, exact_heights
@@ -174,12 +175,9 @@ def relief(cells: int = 88, side: float = 100.0) -> Mesh:
 
 def cube(side: float = 200.0, degrees: float = 10.0) -> Mesh:
     """Turned about the y axis."""
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * side / 2
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    turned = signs @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T
-    squares = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-    faces = [[a, b, c] for p, q, r, t in squares for a, b, c in ((p, q, r), (p, r, t))]
-    return turned.astype(np.float32), np.array(faces)
+    turned = side * boxes.CORNERS @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T
+    return turned.astype(np.float32), boxes.FACES
 
 
 def _grid_faces(rows: int, columns: int) -> np.ndarray:
@@ -230,9 +228,35 @@ def cutter_of(name: str, options: argparse.Namespace) -> tuple[Cutter, Profile]:
     return CUTTERS[name](options.diameter / 2, options.corner, np.radians(options.angle / 2), options.length)
 
 
-def holder_of(radius: float, above: float, corner: float, length: float) -> list[tuple[float, float, float]]:
-    """The rings of a cylinder that begins so far above the tip, its lower rim rounded."""
-    return [(above + corner, radius - corner, corner), (above + length, radius, 0.0)]
+def holder_of(options: argparse.Namespace, longer: float = 0.0) -> list[tuple[float, float, float]]:
+    """The rings of a holder on a tool that is so much longer."""
+    radius, above, corner = [*options.holder, 0.0][:3]
+    above += longer
+    return [(above + corner, radius - corner, corner), (above + options.length, radius, 0.0)]
+
+
+def add_tool_arguments(parser: argparse.ArgumentParser, also: str = "") -> None:
+    parser.add_argument("--cutter", default="ball", help=f"{', '.join(CUTTERS)}{also}")
+    parser.add_argument("--diameter", type=float, default=6.0)
+    parser.add_argument("--corner", type=float, default=1.0, help="radius of a bull nose's corner, or of a taper's tip")
+    parser.add_argument("--angle", type=float, default=60.0, help="of a cone or taper, from side to side, degrees")
+    parser.add_argument("--length", type=float, default=50.0)
+    parser.add_argument(
+        "--holder",
+        nargs="+",
+        type=float,
+        metavar="MM",
+        help="RADIUS ABOVE [CORNER]: a cylinder, so far above the tip, its lower rim rounded",
+    )
+
+
+def parsed(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """Options with those of a tool, and the folder --out."""
+    options = parser.parse_args()
+    if options.holder and (options.cutter not in CUTTERS or len(options.holder) not in (2, 3)):
+        parser.error(f"--holder: expected RADIUS ABOVE [CORNER], and one of {', '.join(CUTTERS)} as the cutter")
+    options.out.mkdir(parents=True, exist_ok=True)
+    return options
 
 
 def machine_part(options: argparse.Namespace) -> dict:
@@ -268,11 +292,8 @@ def machine_part(options: argparse.Namespace) -> dict:
         left = surface_left(heights + options.tolerance, options.step, profile, machine.raster.top - 1.0)
         show_surface(options.out / "surface.html", machine.raster, left, tool)
     if options.holder:
-        radius, above, corner = [*options.holder, 0.0][:3]
         first, held, report["tool_longer_mm"] = machine.hold(
-            lambda longer: tool.with_holder(holder_of(radius, above + longer, corner, options.length)),
-            path,
-            options.tolerance,
+            lambda longer: tool.with_holder(holder_of(options, longer)), path, options.tolerance
         )
         rows = np.column_stack([path, held])[first]
         np.savetxt(options.out / "holder.csv", rows, "%r", ",", header="x,y,cutter_z,holder_z", comments="")
@@ -284,18 +305,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("part", help="a mesh file, or relief or cube")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder to write to")
-    parser.add_argument("--cutter", default="ball", help=f"{', '.join(CUTTERS)}, or a mesh file")
-    parser.add_argument("--diameter", type=float, default=6.0)
-    parser.add_argument("--corner", type=float, default=1.0, help="radius of a bull nose's corner, or of a taper's tip")
-    parser.add_argument("--angle", type=float, default=60.0, help="of a cone or taper, from side to side, degrees")
-    parser.add_argument("--length", type=float, default=50.0)
-    parser.add_argument(
-        "--holder",
-        nargs="+",
-        type=float,
-        metavar="MM",
-        help="RADIUS ABOVE [CORNER]: a cylinder, so far above the tip, its " "lower rim rounded",
-    )
+    add_tool_arguments(parser, ", or a mesh file")
     parser.add_argument("--step", type=float, default=1.0, help="distance of the raster's points")
     parser.add_argument("--tolerance", type=float, default=0.01, help="how far above its heights the tip is driven")
     parser.add_argument(
@@ -309,10 +319,7 @@ def main() -> None:
     parser.add_argument(
         "--table", action="store_true", help="only times of all cutters, and differences from closed forms"
     )
-    options = parser.parse_args()
-    if options.holder and (options.cutter not in CUTTERS or len(options.holder) not in (2, 3)):
-        parser.error(f"--holder: expected RADIUS ABOVE [CORNER], and one of {', '.join(CUTTERS)} as the cutter")
-    options.out.mkdir(parents=True, exist_ok=True)
+    options = parsed(parser)
     try:
         report = machine_part(options)
     except (OSError, ValueError, cyber_radar.Error) as problem:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import at, same_answers
+from conftest import at, numbers, page_data, same_answers
 from cyber_radar import Feature, Status, ball_cutter, bull_nose, cone, flat, taper
 
 
@@ -46,6 +46,12 @@ def test_a_holder_is_a_part_of_its_own(scene):
     assert (casts.status, casts.tri_a) == (Status.HIT, 1)
     np.testing.assert_allclose(casts.t, 5, atol=1e-12)
     assert len(tool.parts) == 2 and flat(1, 5) == flat(1, 5)
+
+
+def test_a_page_draws_a_cutter_of_parts(scene, tmp_path):
+    tool = flat(1, 5).with_holder([(5, 3), (9, 3, 0.5)])
+    shown = page_data(fall(scene, tool, [-2.5, 1, 0]).show(tmp_path / "page.html"))
+    assert [mesh["parts"] for mesh in shown["meshes"]] == [0, 2] and numbers(shown["answers"]["tri_a"]).tolist() == [1]
 
 
 def test_equal_cutters_share_a_mesh(scene):

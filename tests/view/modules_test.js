@@ -61,7 +61,7 @@ function dataOf(rows, { chains = [], mesh = {} } = {}) {
 const HIT = { status: "hit", t: 3, lo: 3, hi: 3, object: 0, tri_a: 0, tri_b: 1, gap: 0, point: [-1, 0, 0], normal: [-1, 0, 0] };
 const CLEAR = { status: "clear", t: Infinity, lo: Infinity, hi: Infinity };
 
-test("a ball touches, and keeps its clearance, beyond its radius; a rounded mesh says how near it comes", () => {
+test("a ball touches, and keeps its clearance, beyond its radius; a rounded mesh says how near it comes, a cutter which part", () => {
   const near = { ...HIT, gap: 2.5, asked: { clearance: 0.5 } };
   const wordsOf = (sensor, row) => inWords(dataOf([row], { mesh: sensor }).answers[0]);
   const ball = { isRound: true, radius: 2, name: "ball" };
@@ -71,6 +71,10 @@ test("a ball touches, and keeps its clearance, beyond its radius; a rounded mesh
   assert.ok(touching.includes("Sensor: ball, drawn with 2 triangles, 2 × 2 × 2"), touching.join("\n"));
   assert.equal(wordsOf(ball, near)[0], "Comes within 0.5 of object 0 (ball) after 3.");
   assert.ok(wordsOf(ball, near).includes("The gap is then 0.5 long (drawn)."));
+  const cutter = { parts: 2, name: "mill" };
+  assert.ok(wordsOf(cutter, HIT).includes("Its cutting end meets the object's triangle 1 (yellow)."));
+  assert.ok(wordsOf(cutter, { ...HIT, tri_a: 1 }).includes("Its part 1 meets the object's triangle 1 (yellow)."));
+  assert.ok(wordsOf(cutter, HIT).includes("Sensor: mill, drawn with 2 triangles, 2 × 2 × 2"));
   const rounded = wordsOf({ radius: 2 }, near);
   assert.equal(rounded[0], "Comes within 2.5 of object 0 (cube) after 3.");
   assert.ok(rounded.includes("Sensor: cube, 2 triangles, 2 × 2 × 2, rounded by 2, which is not drawn"));

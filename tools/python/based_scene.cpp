@@ -20,11 +20,13 @@ MeshId BasedScene::addMesh(std::span<const float> positions, std::span<const uin
   return entered(scene_.addMesh(positions, indices), base, radius);
 }
 
-MeshId BasedScene::entered(MeshId mesh, const Base& base, double radius) {
+MeshId BasedScene::entered(MeshId mesh, const Base& base, double radius, const Cutter& cutter) {
   bases_.resize(std::max<size_t>(bases_.size(), mesh + 1));
   bases_[mesh] = base;
   radii_.resize(bases_.size());
   radii_[mesh] = radius;
+  cutters_.resize(bases_.size());
+  cutters_[mesh] = cutter;
   return mesh;
 }
 

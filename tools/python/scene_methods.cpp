@@ -54,15 +54,22 @@ MeshId addMesh(CastingScene& scene, const Array<float>& vertices, const Array<ui
 /// Of each part, the heights, radii and corners of its rings.
 using Rings = std::vector<std::vector<std::array<double, 3>>>;
 
-Rings ringsOf(const std::string& kind, const std::vector<double>& n) {
+Rings ringsOf(const Cutter& cutter) {
+  Rings out;
+  for (const auto& part : cutter.parts) {
+    out.emplace_back();
+    for (const Ring& ring : part) out.back().push_back({ring.height, ring.radius, ring.corner});
+  }
+  return out;
+}
+
+Rings cutterRings(const std::string& kind, const std::vector<double>& n) {
   const Cutter cutter = kind == "flat"        ? flatCutter(n.at(0), n.at(1))
                         : kind == "ball"      ? ballCutter(n.at(0), n.at(1))
                         : kind == "bull_nose" ? bullNoseCutter(n.at(0), n.at(1), n.at(2))
                         : kind == "cone"      ? coneCutter(n.at(0), n.at(1), n.at(2), n.at(3))
                                               : taperCutter(n.at(0), n.at(1), n.at(2), n.at(3));
-  Rings out(1);
-  for (const Ring& ring : cutter.parts[0]) out[0].push_back({ring.height, ring.radius, ring.corner});
-  return out;
+  return ringsOf(cutter);
 }
 
 MeshId addCutter(CastingScene& scene, const Rings& parts) {
@@ -170,7 +177,8 @@ void defineScene(py::module_& module, py::class_<CastingScene>& scene) {
   scene.def(py::init(&makeScene), py::arg("device"), py::arg("pool"), py::arg("cpu_batch"), py::arg("threads"))
       .def("add_mesh", &addMesh, py::arg("vertices"), py::arg("faces"), py::arg("base"), py::arg("radius") = 0)
       .def("add_cutter", &addCutter)
-      .def_static("cutter_rings", &ringsOf)
+      .def_static("cutter_rings", &cutterRings)
+      .def("parts", [](const CastingScene& of, MeshId mesh) { return ringsOf(of.based().cutter(mesh)); })
       .def("radii",
            [](const CastingScene& of) {
              std::vector<double> radii;

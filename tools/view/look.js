@@ -161,8 +161,8 @@ export class Look {
     const triangles = [];
     for (const [body, triangle] of /** @type {const} */ ([[own, triA], [other, triB]])) {
       const mesh = body.placed.meshOf(body.i);
-      // A mesh of which the page has only the box, or which is drawn as a ball, has other triangles.
-      if (triangle === data.none || mesh.isBox || mesh.isRound) continue;
+      // A mesh of which the page has only the box, or which is drawn as a ball or cutter, has other triangles.
+      if (triangle === data.none || mesh.isBox || mesh.isRound || mesh.parts) continue;
       triangles.push(mesh.corners(triangle).map((corner) => plus(body.placed.toWorld(body.i, corner), body.moved)));
     }
     for (const corners of triangles) {

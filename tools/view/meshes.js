@@ -11,9 +11,9 @@ import { cross, dot, lengthOf, minus, unit } from "./vectors.js";
 export class Mesh {
   /**
    * `isBox`: only the box of a mesh of so many triangles is known. `radius`: of a sensor that is rounded; `isRound`: as a
-   * ball or capsule, which is what is drawn.
+   * ball or capsule, which is what is drawn. `parts`: of a cutter, which the triangles only show; else 0.
    */
-  constructor({ name, positions, indices, triangles = indices.length / 3, isBox = false, isRound = false, radius = 0 }) {
+  constructor({ name, positions, indices, triangles = indices.length / 3, isBox = false, isRound = false, radius = 0, parts = 0 }) {
     this.name = name;
     /** @type {Float32Array} */
     this.positions = positions;
@@ -23,6 +23,7 @@ export class Mesh {
     this.isBox = isBox;
     this.isRound = isRound;
     this.radius = radius;
+    this.parts = parts;
     this.drawn = indices.length / 3;
     /** @type {?number[][][]} */
     this.creaseLines = null;

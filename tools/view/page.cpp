@@ -71,6 +71,7 @@ Json meshJson(const MeshData& mesh, const MeshData* box, bool isRound = false) {
           {"isBox", box != nullptr},
           {"isRound", isRound},
           {"radius", mesh.radius},
+          {"parts", mesh.cutter.parts.size()},
           {"positions", array(shown.positions)},
           {"indices", array(shown.indices)}};
 }

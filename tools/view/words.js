@@ -11,9 +11,9 @@ export const inDigits = (value, digits = 6) => {
 
 export function sizeInWords(/** @type {string} */ what, /** @type {import("./meshes.js").Mesh} */ mesh) {
   const sides = mesh.half.map((half) => inDigits(2 * half, 4)).join(" × ");
-  const { name, triangles, isRound, radius } = mesh;
+  const { name, triangles, isRound, radius, parts } = mesh;
   const rounding = radius > 0 && !isRound ? `, rounded by ${inDigits(radius, 4)}, which is not drawn` : "";
-  return `${what}: ${name}, ${isRound ? "drawn with " : ""}${triangles} triangles, ${sides}${rounding}`;
+  return `${what}: ${name}, ${isRound || parts ? "drawn with " : ""}${triangles} triangles, ${sides}${rounding}`;
 }
 
 function chainInWords(data, { links, bodies }) {
@@ -117,8 +117,9 @@ export function inWords(/** @type {Answer} */ answer) {
   }
   const link = data.linkName(query, answer.body), other = data.linkName(query, answer.otherBody);
   if (triA !== data.none) {
-    const isRound = !link && data.sensors.meshOf(query).isRound;
-    const own = isRound ? "it" : link ? `triangle ${triA} of its link ${link}` : `its triangle ${triA}`;
+    const { isRound, parts } = link ? { isRound: false, parts: 0 } : data.sensors.meshOf(query);
+    const ofCutter = triA === 0 ? "its cutting end" : `its part ${triA}`;
+    const own = isRound ? "it" : parts ? ofCutter : link ? `triangle ${triA} of its link ${link}` : `its triangle ${triA}`;
     const touched = other ? `triangle ${triB} of its link ${other}` : `the object's triangle ${triB}`;
     lines.push(hasGap ? `The nearest points lie on ${own} and on ${touched} (yellow).`
       : `${own[0].toUpperCase()}${own.slice(1)} meets ${touched} (yellow).`);

@@ -91,7 +91,6 @@ class Scene:
         )
         self._names: dict[int, str] = {}
         self._shapes: dict[tuple[Any, ...], int] = {}  # meshes of those that casts were given
-        self._cutters: dict[int, Cutter] = {}
         self._lock = threading.Lock()
         self._user: int | None = None  # the thread that holds the lock
         self._is_lost = False  # to a thread of the process that forked this one
@@ -114,9 +113,7 @@ class Scene:
             if faces is not None:
                 raise ValueError("faces: expected none with a Cutter")
             with self._exclusive() as engine:
-                mesh = engine.add_cutter(vertices.parts)
-                self._cutters[mesh] = vertices
-                return mesh
+                return engine.add_cutter(vertices.parts)
         numbers, corners = mesh_arrays(vertices, faces)
         floats, base = about_base(numbers, corners)
         radius = vertices.radius if isinstance(vertices, Shape) else 0.0
@@ -155,7 +152,6 @@ class Scene:
             if (engine.objects()[1] == number).any():
                 raise ValueError(f"mesh: expected a mesh that no object uses, got {number}")
             engine.remove_mesh(number)
-            self._cutters.pop(number, None)
             self._shapes = {key: mesh for key, mesh in self._shapes.items() if mesh != number}
 
     def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32] | npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
@@ -404,7 +400,7 @@ class Scene:
             return {
                 "settings": self._settings,
                 "meshes": {mesh: (*engine.mesh(mesh), float(engine.radii()[mesh])) for mesh in engine.mesh_ids()},
-                "cutters": self._cutters,
+                "cutters": {mesh: parts for mesh in engine.mesh_ids() if (parts := engine.parts(mesh))},
                 "objects": engine.objects(),
                 "names": self._names,
             }
@@ -417,7 +413,7 @@ class Scene:
         last_mesh = max(state["meshes"], default=-1)
         for mesh in range(last_mesh + 1):
             if mesh in state["cutters"]:
-                self.add_mesh(state["cutters"][mesh])
+                self._engine.add_cutter(state["cutters"][mesh])
             else:
                 self._engine.add_mesh(*state["meshes"].get(mesh, triangle))
         if len(ids):

@@ -17,7 +17,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).parents[2]
 FIGURES = ROOT / "docs/figures.json"
-MEASURED = ("accuracy", "ci", "performance", "python", "reliability", "scaling", "stability")
+MEASURED = ("accuracy", "ci", "gallery", "performance", "python", "reliability", "scaling", "stability")
 NUMBER = re.compile(r"(?<![\w.^-])(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w^])")
 OLD = 100  # commits
 

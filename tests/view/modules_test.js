@@ -278,7 +278,7 @@ test("the closest approach and the last contact are moments of the way", () => {
   const data = dataOf([{ ...CLEAR, moments: [near] }, { ...HIT, moments: [HIT, out] }, { ...HIT, moments: [stuck] }]);
   const [[closest], exits, [still]] = data.answers.map(({ moments }) => moments);
   assert.deepEqual([closest, ...exits, still].map(momentInWords),
-    ["4: nearest, object 1 (lid)", "7: out of all, object 0 (cube)", "10: out of all, object 0 (cube)"]);
+    ["4: nearest, 2.5 from object 1 (lid)", "7: out of all, object 0 (cube)", "10: out of all, object 0 (cube)"]);
   assert.equal(inWords(closest)[0], "Comes nearest to object 1 (lid) after 4.");
   assert.match(inWords(closest)[1], /^The gap is then 2\.5 long/);
   assert.equal(inWords(exits[0])[0], "Is out of everything after 7; the last contact is with object 0 (cube).");

@@ -19,8 +19,8 @@ Workload workloadOf(const BasedScene& based, const std::map<uint32_t, std::strin
     tools::MeshData& mesh = workload.meshes.emplace_back();
     mesh.name = "mesh " + std::to_string(id);
     mesh.radius = based.radius(id);
-    mesh.cutter = based.cutter(id);
     if (!scene.hasMesh(id)) continue;
+    mesh.cutter = based.cutter(id);
     const MeshView view = scene.mesh(id);
     mesh.positions.assign(view.positions.begin(), view.positions.end());
     mesh.indices.assign(view.indices.begin(), view.indices.end());

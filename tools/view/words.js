@@ -83,11 +83,10 @@ function answerInWords(/** @type {Answer} */ answer) {
   return `${sentences.whether} Asked was only whether (any_hit): not what or when; at the start counts, too.`;
 }
 
-const KINDS_OF_MOMENTS = { contact: "", closest: "nearest, ", exit: "out of all, " };
-
 /** A moment in a list: "0.5: object 3 (lid)". */
-export function momentInWords(/** @type {Answer} */ { data, query, object, status, t, lo, as }) {
-  const name = KINDS_OF_MOMENTS[as] + data.called(data.queries.scene[query], object);
+export function momentInWords(/** @type {Answer} */ { data, query, object, status, t, lo, gap, as }) {
+  const kinds = { contact: "", closest: `nearest, ${inDigits(Math.max(gap, 0))} from `, exit: "out of all, " };
+  const name = kinds[as] + data.called(data.queries.scene[query], object);
   return status === "undecided" ? `not before ${inDigits(lo)}, if at all: ${name}` : `${inDigits(t)}: ${name}`;
 }
 

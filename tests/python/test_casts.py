@@ -306,7 +306,7 @@ def test_the_closest_approach_and_the_last_contact():
     with pytest.raises(ValueError, match="closest"):
         scene.cast(mesh, None, [0, 0, 1], closest=True, mode="sampled")
     turned = scene.cast(mesh, None, None, turns=([0, 0, 1], 1, [0, 0, 0]), exit=True)
-    assert list(turned.reasons) == ["exit: expected neither a turn nor ignoreLeaving beside it"]
+    assert list(turned.reasons) == ["exit: expected neither a turn nor ignore_leaving beside it"]
 
 
 def test_an_index_gives_the_casts_there_with_all_that_they_list(boxes):

@@ -22,7 +22,48 @@ TEST_CASE("cutters have their kind's numbers, and a holder above") {
   CHECK(workload.meshes[2].cutter.parts[0][0].radius == 0);
   CHECK(workload.meshes[3].cutter.parts[0][0].corner == 1);
   file["scenes"][0]["instances"].push_back({1});
-  CHECK_THAT(files.refusal(file.dump()), Contains("expected a mesh, got the cutter 1"));
+  CHECK_THAT(files.refusal(file.dump()), Contains("scenes[0]: instance 0: mesh 1: expected a mesh, got a cutter"));
+}
+
+TEST_CASE("what a cutter cannot do, and closest and exit with a turn or ignore_leaving, is refused by its key") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["meshes"] = nlohmann::json::parse(R"(["a.obj", {"shape": "flat", "radius": 3, "length": 20}])");
+  file["queries"].erase(1);
+  const auto refusal = [&](uint32_t mesh, const char* more) {
+    nlohmann::json changed = file;
+    changed["queries"][0]["sensor"] = {mesh};
+    changed["queries"][0].update(nlohmann::json::parse(more));
+    if (changed["queries"][0].contains("turn")) {
+      for (const char* straight : {"dir", "D", "speed"}) changed["queries"][0].erase(straight);
+    }
+    return files.refusal(changed.dump());
+  };
+  const char* const turn = R"({"turn": {"axis": [0, 0, 1], "angle": 1, "centre": [0, 0, 0]}, "exit": true})";
+  CHECK_THAT(refusal(0, turn), StartsWith("queries[0].exit: expected none beside a turn"));
+  CHECK_THAT(refusal(1, turn), StartsWith("queries[0].turn: expected none with a cutter"));
+  for (const std::string key : {"closest", "exit"}) {
+    CHECK_THAT(refusal(0, ("{\"ignore_leaving\": true, \"" + key + "\": true}").c_str()),
+               StartsWith("queries[0]." + key + ": expected none beside \"ignore_leaving\""));
+  }
+  for (const std::string key : {"closest", "exit", "ignore_leaving", "skip_overlapping"}) {
+    CHECK_THAT(refusal(1, ("{\"" + key + "\": true}").c_str()),
+               StartsWith("queries[0]." + key + ": expected none with a cutter"));
+  }
+  CHECK_THAT(refusal(1, R"({"mode": "sampled"})"),
+             StartsWith("queries[0].mode: expected contact or reference, as a cutter needs"));
+}
+
+TEST_CASE("no link of a chain is round or a cutter") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["meshes"] = nlohmann::json::parse(
+      R"(["a.obj", {"shape": "ball", "radius": 2}, {"shape": "flat", "radius": 3, "length": 20}])");
+  file["chains"] = nlohmann::json::parse(R"([{"links": [{"name": "arm", "meshes": [[0], [1]]}]}])");
+  CHECK_THAT(files.refusal(file.dump()),
+             StartsWith("chains[0].links[0].meshes[1][0]: expected a mesh without a radius, which only sensors have"));
+  file["chains"][0]["links"][0]["meshes"][1] = {2};
+  CHECK_THAT(files.refusal(file.dump()), StartsWith("chains[0].links[0].meshes[1][0]: expected a mesh, got a cutter"));
 }
 
 TEST_CASE("round sensors have their radius beside the clearance of a query") {

@@ -187,14 +187,12 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
     if (!fields_[i]) continue;
     readField(queryFields()[i], *fields_[i], index, query);
     if (query.hits > 1 && query.anyHit) refuse(*fields_[i], index, "expected 1 beside \"any_hit\"");
-    if (query.turn && query.speed) refuse(*fields_[i], index, "expected none beside a turn");
   }
   query.clearance = withRadius(query.clearance, world_.meshes[query.mesh].radius);
-  for (size_t i = 0; i < fields_.size(); ++i) {
-    if (query.turn && query.ignoreLeaving && query.clearance > 0 &&
-        queryFields()[i].name == std::string_view("ignore_leaving")) {
-      refuse(*fields_[i], index, "expected none beside a turn and a clearance");
-    }
+  const auto [key, wrong] = conflictIn(world_, query);
+  if (key == "turn") refuse(*angle_, index, wrong);
+  for (size_t i = 0; i < fields_.size() && !wrong.empty(); ++i) {
+    if (queryFields()[i].name == key) refuse(*fields_[i], index, wrong);
   }
   if (mode_) {
     query.mode = static_cast<AnswerMode>(whole(*mode_, index, 2, "0 for sampled, 1 for contact or 2 for reference"));

@@ -33,7 +33,7 @@ void refuseMember(const JsonValue& object, const std::string& wrong,
 /// Reads one chain.
 class ChainReader {
  public:
-  explicit ChainReader(std::span<const std::array<double, 3>> bases) : bases_(bases) {}
+  ChainReader(const Workload& world, std::span<const std::array<double, 3>> bases) : world_(world), bases_(bases) {}
 
   ChainSpec read(const JsonValue& value) {
     requireKnownKeys(value, {"links", "pairs", "ignored"});
@@ -94,6 +94,7 @@ class ChainReader {
 
   LinkMesh meshFrom(const JsonValue& list) const {
     const Instance placed = instanceFrom(list, bases_);
+    if (const std::string wrong = onlySensor(world_.meshes[placed.mesh]); !wrong.empty()) list[0].refuse(wrong);
     for (const double value : placed.worldFromMesh.m) {
       if (std::abs(value) > 0x1p300) list.expected("numbers of at most 2^300");
     }
@@ -141,14 +142,15 @@ class ChainReader {
     return pairs;
   }
 
+  const Workload& world_;
   std::span<const std::array<double, 3>> bases_;
   ChainSpec chain_;
 };
 
 }  // namespace
 
-ChainSpec chainFrom(const JsonValue& value, std::span<const std::array<double, 3>> bases) {
-  return ChainReader(bases).read(value);
+ChainSpec chainFrom(const JsonValue& value, const Workload& world, std::span<const std::array<double, 3>> bases) {
+  return ChainReader(world, bases).read(value);
 }
 
 void readChainWay(const JsonValue& query, const Workload& world, QuerySpec& to) {

@@ -10,7 +10,7 @@
 namespace radar::tools {
 
 /// `bases`: of the meshes that links may have.
-ChainSpec chainFrom(const JsonValue& value, std::span<const std::array<double, 3>> bases);
+ChainSpec chainFrom(const JsonValue& value, const Workload& world, std::span<const std::array<double, 3>> bases);
 
 /// What of a query says which chain goes where.
 void readChainWay(const JsonValue& query, const Workload& world, QuerySpec& to);

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "batch/outputs.h"
@@ -77,6 +78,10 @@ Workload queriesToMeasure(const std::filesystem::path& file, std::vector<std::st
 /// ids of queries). Returns the query file. Throws std::runtime_error if something cannot be written.
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder,
                                      bool binary = false);
+
+/// The first option of a query that does not go with its others, or with a cutter, as a query file calls it, and what
+/// was expected; empty if all do.
+std::pair<std::string, std::string> conflictIn(const Workload& workload, const QuerySpec& query);
 
 /// What of a query mode sampled does not offer, as a query file says it; empty if it answers the query.
 std::string exactOnly(const Workload& workload, const QuerySpec& query);

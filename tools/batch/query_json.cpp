@@ -17,6 +17,10 @@ namespace radar::tools {
 
 namespace {
 
+bool isCutter(const Workload& workload, const QuerySpec& query) {
+  return !query.chain && !workload.meshes[query.mesh].cutter.parts.empty();
+}
+
 constexpr std::string_view kLater[] = {"rotation"};
 
 void readField(const JsonValue& value, const QueryField& field, QuerySpec& to) {
@@ -126,6 +130,11 @@ Instance instanceFrom(const JsonValue& list, std::span<const std::array<double, 
   return instance;
 }
 
+std::string onlySensor(const MeshData& mesh) {
+  if (!mesh.cutter.parts.empty()) return "expected a mesh, got a cutter, which only sensors are";
+  return mesh.radius > 0 ? "expected a mesh without a radius, which only sensors have" : "";
+}
+
 QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<const std::array<double, 3>> bases) {
   static const auto withFields = [](std::vector<std::string_view> known, bool ofChains) {
     for (const QueryField& field : queryFields()) {
@@ -186,11 +195,7 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
   }
   readFields(query, world.objectCount(spec.scene), spec);
   spec.clearance = withRadius(spec.clearance, world.meshes[spec.mesh].radius);
-  // A turn has no length.
-  if (spec.turn && spec.speed) query.member("speed").refuse("expected none beside \"turn\"");
-  if (spec.turn && spec.ignoreLeaving && spec.clearance > 0) {
-    query.member("ignore_leaving").refuse("expected none beside \"turn\" and a clearance");
-  }
+  if (const auto [key, wrong] = conflictIn(world, spec); !wrong.empty()) query.member(key.c_str()).refuse(wrong);
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();
     spec.mode = mode.guard([&] { return modeFrom(name); });
@@ -201,7 +206,33 @@ QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<con
   return spec;
 }
 
+std::pair<std::string, std::string> conflictIn(const Workload& workload, const QuerySpec& query) {
+  struct Option {
+    const char* key;
+    bool isGiven, goesWithCutter, goesWithTurn, goesWithLeaving;
+  };
+  // A turn has no length.
+  const Option options[] = {{"turn", query.turn.has_value(), false, true, true},
+                            {"speed", query.speed.has_value(), true, false, true},
+                            {"ignore_leaving", query.ignoreLeaving, false, query.clearance == 0, true},
+                            {"skip_overlapping", query.skipOverlapping, false, true, true},
+                            {"closest", query.closest, false, false, false},
+                            {"exit", query.exit, false, false, false}};
+  const bool ofCutter = isCutter(workload, query);
+  for (const Option& option : options) {
+    if (!option.isGiven) continue;
+    if (ofCutter && !option.goesWithCutter) return {option.key, "expected none with a cutter"};
+    if (query.turn && !option.goesWithTurn) {
+      const bool leaves = option.key == std::string_view("ignore_leaving");
+      return {option.key, leaves ? "expected none beside a turn and a clearance" : "expected none beside a turn"};
+    }
+    if (query.ignoreLeaving && !option.goesWithLeaving) return {option.key, "expected none beside \"ignore_leaving\""};
+  }
+  return {};
+}
+
 std::string exactOnly(const Workload& workload, const QuerySpec& query) {
+  if (isCutter(workload, query)) return "a cutter";
   if (query.turn) return "\"turn\"";
   if (query.motion) return "\"motion\"";
   if (!workload.scenes[query.scene].motions.empty()) return "a scene with \"motions\"";

@@ -26,6 +26,9 @@ std::array<double, 3> motionFrom(const JsonValue& list, size_t first);
 /// `bases`: of the meshes that may be placed.
 Instance instanceFrom(const JsonValue& list, std::span<const std::array<double, 3>> bases);
 
+/// Why a mesh cannot be an object's or a link's; empty if it can.
+std::string onlySensor(const MeshData& mesh);
+
 /// A query on `world`. Whether another one has its id is not checked.
 QuerySpec queryFrom(const JsonValue& query, const Workload& world, std::span<const std::array<double, 3>> bases);
 

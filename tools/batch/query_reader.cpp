@@ -199,7 +199,7 @@ JsonQueryFile Reader::read() {
   if (format.string() != "cyber-radar-queries-1") format.expected("\"cyber-radar-queries-1\"");
   root.member("meshes").forEach([&](const JsonValue& mesh) { readMesh(mesh); });
   root.ifHas("chains", [&](const JsonValue& chains) {
-    chains.forEach([&](const JsonValue& chain) { workload_.chains.push_back(chainFrom(chain, bases_)); });
+    chains.forEach([&](const JsonValue& chain) { workload_.chains.push_back(chainFrom(chain, workload_, bases_)); });
   });
   root.member("scenes").forEach([&](const JsonValue& scene) { readScene(scene); });
   JsonQueryFile result;
@@ -262,12 +262,8 @@ void Reader::readScene(const JsonValue& scene) {
   readInstances(scene, spec);
   for (size_t i = 0; i < spec.instances.size(); ++i) {
     const uint32_t mesh = spec.instances[i].mesh;
-    if (!workload_.meshes[mesh].cutter.parts.empty()) {
-      scene.refuse("instance " + std::to_string(i) + ": expected a mesh, got the cutter " + std::to_string(mesh));
-    }
-    if (workload_.meshes[mesh].radius == 0) continue;
-    scene.refuse("instance " + std::to_string(i) +
-                 ": expected a mesh without a radius, which only sensors have, got mesh " + std::to_string(mesh));
+    const std::string wrong = onlySensor(workload_.meshes[mesh]);
+    if (!wrong.empty()) scene.refuse("instance " + std::to_string(i) + ": mesh " + std::to_string(mesh) + ": " + wrong);
   }
   const size_t objects = (spec.base ? workload_.scenes[*spec.base].instances.size() : 0) + spec.instances.size();
   scene.ifHas("masks", [&](const JsonValue& masks) { spec.masks = readMasks(masks, objects); });

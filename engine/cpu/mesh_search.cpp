@@ -118,11 +118,15 @@ std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
   from = select(max(times.from, Lanes<Real>(0)), times.to, Lanes<Real>(Real(INFINITY)), from);
   const FourFloats floats = from.floats();
   std::array<int32_t, 4> keys;
-  for (int i = 0; i < 4; ++i) keys[i] = (valid >> i & 1) != 0 ? keyOf(floats[i], i) : kNever | i;
+  for (int i = 0; i < 4; ++i) {
+    const int32_t invalid = static_cast<int32_t>(valid >> i & 1) - 1;  // all bits, or none
+    keys[i] = (keyOf(floats[i], i) & ~invalid) | ((kNever | i) & invalid);
+  }
+  // Without a branch, which nothing could foresee, and which compilers make of std::max().
   const auto sort = [&](int i, int j) {
-    const int32_t more = std::max(keys[i], keys[j]), less = std::min(keys[i], keys[j]);
-    keys[i] = more;
-    keys[j] = less;
+    const int64_t above = int64_t{keys[i]} - keys[j], swapped = above & above >> 63;
+    keys[i] = static_cast<int32_t>(keys[i] - swapped);
+    keys[j] = static_cast<int32_t>(keys[j] + swapped);
   };
   sort(0, 1);
   sort(2, 3);
@@ -345,19 +349,21 @@ void MeshSearch::descend(const MeshTree& treeA, const MeshTree& treeB, const Ope
   open_[0] = {static_cast<float>((1 - 0x1p-22) * near), 0, 0};
   Open* top = open_.data() + 1;
   while (top != open_.data() && !visitor.isDecided()) {
-    const Open pairNow = *--top;
-    if (pairNow.near > test.latest()) continue;
-    if (visitor.isBefore({object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
-    const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
+    --top;
+    const float from = top->near;
+    if (from > test.latest()) continue;
+    const uint32_t placeA = top->a, placeB = top->b;
+    if (visitor.isBefore({object, treeB.below[placeB].least, treeA.below[placeA].least})) continue;
+    const gpu::MeshNode &a = treeA.nodes[placeA], &b = treeB.nodes[placeB];
     if (test.keepApart(a, b)) continue;
     // To decide a pair of triangles may take as long as to test very many nodes.
     const bool areLeaves = isLeaf(a) && isLeaf(b);
     if (areLeaves || ++visits % kVisits == 0) throwIfStopped(stop);
     if (areLeaves) {
-      test.meet(a, b, pairNow.near);
+      test.meet(a, b, from);
       continue;
     }
-    const typename Opener::Parts parts = opener.open(pairNow.a, pairNow.b);
+    const typename Opener::Parts parts = opener.open(placeA, placeB);
     FourNodes nodesA, nodesB;
     for (int i = 0; i < 4; ++i) {
       nodesA[i] = &treeA.nodes[parts.a[i]];

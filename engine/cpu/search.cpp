@@ -14,9 +14,15 @@ namespace radar::cpu {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr size_t kCacheLine = 64;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void prefetch(const Query& query) {
+  const char* const bytes = reinterpret_cast<const char*>(&query);
+  for (size_t at = 0; at < sizeof(Query); at += kCacheLine) __builtin_prefetch(bytes + at);
 }
 
 }  // namespace
@@ -27,9 +33,12 @@ void Search::run(std::span<const Query> queries, const Scene::Impl& scene, std::
   const size_t count = queries.size();
   size_t workers = std::clamp<size_t>(count, 1, threadCount(threads_));
   if (searches_.size() < workers) searches_.resize(workers);
+  const std::span<const uint32_t> order = order_.of(queries, scene, tree, threads_);
   const auto answer = [&](unsigned worker, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
+    for (size_t at = first; at < last; ++at) {
       throwIfStopped(stop);
+      if (!order.empty() && at + 1 < count) prefetch(queries[order[at + 1]]);
+      const size_t i = order.empty() ? at : order[at];
       Listed* const listed = hasLists(queries[i]) ? &lists[i] : nullptr;
       results[i] = searches_[worker].answer(queries[i], scene, tree, listed, stop);
       results[i].tier = tier_;
@@ -54,7 +63,7 @@ void Search::run(std::span<const Query> queries, const Scene::Impl& scene, std::
   }
   // Small enough for the threads to end at about the same time, large enough that they rarely share a cache line of
   // results.
-  const size_t rest = count - done, chunk = std::clamp<size_t>(rest / (16 * workers), 1, 16);
+  const size_t rest = count - done, chunk = std::clamp<size_t>(rest / (16 * workers), 1, 64);
   parallelFor(rest, chunk, static_cast<unsigned>(workers),
               [&](unsigned worker, size_t first, size_t last) { answer(worker, done + first, done + last); });
   const double used = static_cast<double>(rest == 0 ? 1 : workers);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "cpu/place_order.h"
 #include "cpu/query_search.h"
 
 namespace radar::cpu {
@@ -39,6 +40,7 @@ class Search {
   Tier tier_;
   unsigned threads_;
   std::vector<QuerySearch> searches_;  // one per thread
+  PlaceOrder order_;
   double secondsPerQuery_ = 0;         // on one thread, in the last run
 };
 

@@ -18,9 +18,9 @@ class Cutter:
     cone() and taper() make. Casts move it (Scene.cast, Scene.add_mesh), with poses that are rigid to 1e-6; objects and
     links of chains cannot be cutters. The CPU answers, whatever the mode, which cannot be "sampled".
 
-    A cast's `tri_a` is the number of the part that touches, 0 for the cutting end, `point` is where the object is touched, and `t` is as exact
-    as rounding allows; what passes at no distance, to rounding, may be UNDECIDED. A clearance grows the solid by a ball;
-    ignore_leaving, skip_overlapping and turns are refused.
+    A cast's `tri_a` is the number of the part that touches, 0 for the cutting end, `point` is where the object is touched, and
+    `t` is as exact as rounding allows; what passes at no distance, to rounding, may be UNDECIDED. A clearance grows the solid
+    by a ball. Casts with turns, ignore_leaving, skip_overlapping, closest or exit are INVALID.
     """
 
     parts: tuple[tuple[tuple[float, float, float], ...], ...]

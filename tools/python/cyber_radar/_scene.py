@@ -300,8 +300,8 @@ class Scene:
             of a hit is the whole way: contact comes by then.
         skip_overlapping: leave out objects whose surfaces cross the mesh's at the start; the answer lists them.
         closest: find how near the mesh comes to objects on the whole of its way, too (Casts.closest), and
-        exit: when its last contact ends, the way out of what it overlaps (Casts.exit). Neither with turns nor with
-            ignore_leaving.
+        exit: when its last contact ends, the way out of what it overlaps (Casts.exit). Neither with turns,
+            nor with ignore_leaving, nor of a Cutter.
 
         The next five are one value for all casts, or (...) one for each:
 

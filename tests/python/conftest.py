@@ -23,6 +23,11 @@ def box(*sides: float) -> np.ndarray:
     return (signs * np.array(sides) / 2).astype(np.float32)
 
 
+def write_obj(file: pathlib.Path, vertices=box(1, 1, 1), faces: np.ndarray = FACES) -> None:
+    lines = ["v {} {} {}".format(*vertex) for vertex in np.asarray(vertices).tolist()]
+    file.write_text("\n".join(lines + ["f {} {} {}".format(*face) for face in faces + 1]))
+
+
 def at(positions) -> np.ndarray:
     """Poses that only move: (..., 3) to (..., 4, 4)."""
     positions = np.asarray(positions, dtype=np.float64)

@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from conftest import FACES, box, random_poses
+from conftest import box, random_poses, write_obj
 
 STATUS = ["hit", "clear", "overlap", "undecided", "invalid"]
 TIER = ["select", "sampled", "contact", "reference"]
@@ -35,8 +35,7 @@ def refusal(folder, *arguments) -> str:
 
 def write_world(folder, **queries):
     """Two scenes of boxes, of which the second has one more."""
-    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
-    (folder / "box.obj").write_text("\n".join(lines))
+    write_obj(folder / "box.obj")
     poses = random_poses(np.random.default_rng(3), 30, 10)
     instances = [[0, *pose[:3].ravel().tolist()] for pose in poses]
     scenes = [{"id": "a", "instances": instances[1:]}, {"id": "b", "base": 0, "instances": instances[:1]}]

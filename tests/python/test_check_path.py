@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from conftest import page_data
+from conftest import box, page_data, write_obj
 from cyber_radar import Cutter
 from test_examples import EXAMPLES
 
@@ -95,13 +95,10 @@ def test_the_pocket_has_one_conflict_at_its_distance(tmp_path):
 
 def test_points_of_a_file_are_moves_that_cut_or_do_not(tmp_path):
     rows = [[0, 0, 9, 0], [0, 0, 2, 0], [30, 0, 2, 1], [30, 0, 9, 0]]
-    (tmp_path / "wall.obj").write_text(
-        "".join(f"v {x * 10 + 20} {y * 40} {z * 4 + 2}\n" for x, y, z in boxes.CORNERS)
-        + "".join("f {} {} {}\n".format(*face) for face in boxes.FACES + 1)
-    )
+    wall = tmp_path / "wall.obj"
+    write_obj(wall, box(10, 40, 4) + (20, 0, 2))
     (tmp_path / "path.csv").write_text("".join(",".join(map(str, row)) + "\n" for row in rows))
     np.save(tmp_path / "path.npy", np.array(rows))
-    wall = tmp_path / "wall.obj"
     for name, line in (("path.csv", 3), ("path.npy", 2)):
         for given, move in (("--fixture", "cutting"), ("--stock", None)):
             done = run(tmp_path / name, given, wall, "--out", tmp_path / "out")

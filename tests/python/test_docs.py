@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import FACES, box
+from conftest import write_obj
 from cyber_radar import _chain, _cutters, _engine, _scene, _shapes, _turns
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -38,8 +38,7 @@ def examples(page: str) -> list[str]:
 
 
 def prints_what_it_says(script: str, folder: pathlib.Path, command: list[str]) -> None:
-    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
-    (folder / "part.obj").write_text("\n".join(lines))
+    write_obj(folder / "part.obj")
     (folder / "page.py").write_text(script)
     # Open MPI wants to be told that root runs it, and that there may be no network.
     environment = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}

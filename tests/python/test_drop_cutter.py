@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import page_data
+from conftest import page_data, write_obj
 from test_examples import EXAMPLES, run
 
 import drop_cutter  # noqa: E402  (test_examples makes the examples importable)
@@ -66,7 +66,7 @@ def test_a_cutter_pushed_from_any_side_stops_where_it_falls_to_that_height():
 
 
 def test_a_relief_is_machined(tmp_path):
-    (tmp_path / "part.obj").write_text(_obj(*drop_cutter.relief(cells=10, side=20.0)))
+    write_obj(tmp_path / "part.obj", *drop_cutter.relief(cells=10, side=20.0))
     text = run(
         "drop_cutter.py", tmp_path / "part.obj", "--out", tmp_path, "--step", 1, "--diameter", 4,
         "--cutter", "bull", "--corner", 0.5, "--holder", 8, 6, "--waterline", 3, 30, 120,
@@ -149,7 +149,7 @@ def test_the_surface_left_is_the_lowest_envelope_and_never_below_the_part():
 
 def test_any_mesh_may_be_the_cutter(tmp_path):
     corners = np.float32([[0, 0, 0], [2, 0, 3], [-1, 2, 3], [-1, -2, 3]])
-    (tmp_path / "mill.obj").write_text(_obj(corners, np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])))
+    write_obj(tmp_path / "mill.obj", corners, np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]))
     run("drop_cutter.py", "cube", "--cutter", tmp_path / "mill.obj", "--step", 50, "--out", tmp_path)
     heights = np.load(tmp_path / "heights.npy")
     assert heights.shape == (5, 6)
@@ -188,9 +188,3 @@ def test_the_turned_cube_has_no_holes():
     over = expected > machine.raster.floor
     assert over.mean() > 0.8
     np.testing.assert_allclose(heights.ravel()[over], expected[over], atol=1e-9)
-
-
-def _obj(vertices: np.ndarray, faces: np.ndarray) -> str:
-    return "".join(
-        [f"v {x} {y} {z}\n" for x, y, z in vertices.tolist()] + [f"f {a} {b} {c}\n" for a, b, c in faces + 1]
-    )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import FACES, box, random_poses
+from conftest import box, random_poses, write_obj
 from cyber_radar import Status
 from test_chains import arm, configurations
 
@@ -37,8 +37,7 @@ def test_random_casts_have_the_bits_of_the_program(tmp_path):
     rng = np.random.default_rng(12)
     objects, poses = random_poses(rng, 60, 16), random_poses(rng, COUNT, 16)
     displacements = rng.normal(size=(COUNT, 3)) * 3
-    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
-    (tmp_path / "box.obj").write_text("\n".join(lines))
+    write_obj(tmp_path / "box.obj")
     lengths = np.array([np.hypot(np.hypot(*d[:2]), d[2]) for d in displacements])
     queries = {
         "format": "cyber-radar-queries-1",
@@ -70,9 +69,7 @@ def test_a_chain_of_a_file_has_the_bits_of_moves(tmp_path):
     chain, count = arm(), 300
     held, names = chain.scene.objects(), ["rod.obj", "cube.obj"]
     for mesh, name in enumerate(names):
-        vertices, faces = chain.scene.mesh(mesh)
-        lines = [f"v {x} {y} {z}" for x, y, z in vertices.tolist()] + [f"f {a} {b} {c}" for a, b, c in faces + 1]
-        (tmp_path / name).write_text("\n".join(lines))
+        write_obj(tmp_path / name, *chain.scene.mesh(mesh))
     links = []
     for link in chain.links:
         entry = {"name": link.name, "joint": link.joint, "meshes": []}
@@ -149,10 +146,7 @@ def test_a_file_far_from_the_origin_has_the_answers_of_the_program(tmp_path):
     rng = np.random.default_rng(3)
     offset = np.array([512340.678, 4512350.123, 296.25])
     for name, by in (("far.obj", offset), ("near.obj", np.zeros(3))):
-        lines = [f"v {x} {y} {z}" for x, y, z in (box(3, 4, 5) + by).tolist()] + [
-            f"f {a} {b} {c}" for a, b, c in FACES + 1
-        ]
-        (tmp_path / name).write_text("\n".join(lines))
+        write_obj(tmp_path / name, box(3, 4, 5) + by)
     starts = random_poses(rng, 500, 30)
     starts[:, :3, 3] += offset
     turned = random_poses(rng, 500, 9)

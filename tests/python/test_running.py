@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import DOWN, FACES, at, box, fill, random_poses, same_answers
+from conftest import DOWN, FACES, at, box, fill, random_poses, same_answers, write_obj
 
 
 class Hold:
@@ -173,8 +173,7 @@ def test_other_threads_run_while_a_mesh_is_added_deformed_or_read(tmp_path):
     until_another_thread_runs_within(lambda: engine.add_mesh(vertices, faces, np.zeros(3)))
     until_another_thread_runs_within(lambda: engine.set_vertices(0, vertices, np.zeros(3)))
     until_another_thread_runs_within(lambda: cyber_radar._engine.float_vertices(np.float64(vertices), faces))
-    lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a} {b} {c}" for a, b, c in faces + 1]
-    (tmp_path / "a.obj").write_text("\n".join(lines))
+    write_obj(tmp_path / "a.obj", vertices, faces)
     until_another_thread_runs_within(lambda: cyber_radar._engine.read_mesh(tmp_path / "a.obj", 1.0))
     until_another_thread_runs_within(lambda: cyber_radar._engine.read_assembly(tmp_path / "a.obj", 1.0))
 

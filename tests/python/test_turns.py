@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import FACES, at, box, random_poses
+from conftest import FACES, at, box, random_poses, write_obj
+from test_arguments import refusal
 from test_program import ask_program, column, instance
 
 COUNT = 2000
@@ -19,12 +20,6 @@ def rotation(axis, angle) -> np.ndarray:
     k = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
     angle = np.asarray(angle)[..., None, None]
     return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * (k @ k)
-
-
-def refusal(call) -> str:
-    with pytest.raises(ValueError) as caught:
-        call()
-    return str(caught.value)
 
 
 @pytest.fixture
@@ -41,8 +36,7 @@ def test_random_turns_have_the_answers_of_the_program(tmp_path):
     objects, poses = random_poses(rng, 60, 16), random_poses(rng, COUNT, 16)
     ways = rng.normal(size=(COUNT, 3)) * (np.arange(COUNT) % 2)[:, None]
     turns = cyber_radar.Turns(rng.normal(size=(COUNT, 3)), rng.uniform(-3, 3, COUNT), rng.uniform(-9, 9, (COUNT, 3)))
-    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
-    (tmp_path / "box.obj").write_text("\n".join(lines))
+    write_obj(tmp_path / "box.obj")
     queries = {
         "format": "cyber-radar-queries-1",
         "meshes": ["box.obj"],

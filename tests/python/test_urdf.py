@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cyber_radar
-from conftest import FACES, at, box
+from conftest import FACES, at, box, write_obj
 from cyber_radar import Status, load_urdf
 from test_arguments import refusal
 
@@ -39,8 +39,7 @@ ROBOT = """<?xml version="1.0"?>
 
 @pytest.fixture
 def robot(tmp_path):
-    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
-    (tmp_path / "part.obj").write_text("\n".join(lines))
+    write_obj(tmp_path / "part.obj")
     (tmp_path / "robot.urdf").write_text(ROBOT)
     return tmp_path / "robot.urdf"
 

@@ -22,7 +22,7 @@ TEST_CASE("cutters have their kind's numbers, and a holder above") {
   CHECK(workload.meshes[2].cutter.parts[0][0].radius == 0);
   CHECK(workload.meshes[3].cutter.parts[0][0].corner == 1);
   file["scenes"][0]["instances"].push_back({1});
-  CHECK_THAT(files.refusal(file.dump()), Contains("scenes[0]: instance 0: mesh 1: expected a mesh, got a cutter"));
+  CHECK_THAT(files.refusal(file.dump()), Contains("scenes[0]: instance 2: mesh 1: expected a mesh, got a cutter"));
 }
 
 TEST_CASE("what a cutter cannot do, and closest and exit with a turn or ignore_leaving, is refused by its key") {
@@ -119,13 +119,14 @@ TEST_CASE("a shape that breaks its contract is refused with its path, what was e
       {R"({"shape": "flat", "radius": 1})", "meshes[0]: ", "\"length\", which is missing"},
       {R"({"shape": "flat", "radius": 1, "length": 9, "corner": 1})",
        "meshes[0]: ", "\"corner\": expected none in a flat"},
-      {R"({"shape": "ball_cutter", "radius": 2, "length": 1})", "meshes[0]: ", "length: expected at least twice the radius"},
+      {R"({"shape": "ball_cutter", "radius": 2, "length": 1})",
+       "meshes[0]: ", "length: expected at least twice the radius"},
       {R"({"shape": "flat", "radius": 2, "length": 1, "holder": [[[1]]]})",
        "meshes[0].holder[0][0]: ", "2 or 3 numbers"},
       {R"({"shape": "capsule", "from": [0,0,0], "to": [0,1e39,0], "radius": 1})", "meshes[0].to[1]: ", "floats hold"},
       {R"({"shape": "capsule", "from": [0,0], "to": [0,1,0], "radius": 1})", "meshes[0].from: ", "3 numbers"},
       {R"({"file": "a.obj", "radius": "2"})", "meshes[0].radius: ", "a finite number"},
-      {R"({"file": "a.obj", "radius": 2})", "scenes[0]: ", "instance 0: expected a mesh without a radius"},
+      {R"({"file": "a.obj", "radius": 2})", "scenes[0]: ", "instance 0: mesh 0: expected a mesh without a radius"},
   };
   for (const auto& c : cases) {
     CAPTURE(c.mesh);

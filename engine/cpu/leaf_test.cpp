@@ -66,12 +66,7 @@ struct Collected {
   }
   /// One bit per lane whose pair may meet by `duration`.
   unsigned possible(Real duration) const {
-    unsigned bits = 0;
-    for (int i = 0; i < 4; ++i) {
-      const bool never = from[i] > duration || from[i] > to[i] || to[i] < 0;
-      bits |= unsigned{!never} << i;
-    }
-    return bits;
+    return ~(above(from, Lanes<Real>(duration)) | above(from, to) | above(Lanes<Real>(Real(0)), to));
   }
 };
 
@@ -190,10 +185,11 @@ LeafTimes<Real> LeafTest<Real>::operator()(const gpu::MeshNode& a, const gpu::Me
       collected.add(dot<Real>(b_.edge[k], gapAcross) + halfA + halfB, abs(halfA) + abs(halfB),
                     dot<Real>(b_.edge[k], travelAcross), margin, 2 + 3 * i + k);
     }
+    out.possible &= collected.possible(duration);
+    if (out.possible == 0) return out;
   }
   out.times = {collected.from, collected.to};
   out.axis = collected.axis;
-  out.possible &= collected.possible(duration);
   return out;
 }
 

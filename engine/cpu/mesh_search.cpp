@@ -196,19 +196,21 @@ class StraightTest {
     return times;
   }
   /// Passes the pairs of triangles of two leaves to the visitor, earliest first.
-  void meet(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
-    meetLeaves(a, b, near);
-    update();
-  }
+  void meet(const gpu::MeshNode& a, const gpu::MeshNode& b, float near);
 
  private:
   void update() {
-    latest_ = static_cast<float>((1 + 0x1p-22) * pair_.motion.timeOf(visitor_.latest()));
+    if (visitor_.latest() != seen_) {
+      seen_ = visitor_.latest();
+      const double time = pair_.motion.timeOf(seen_);
+      latest_ = static_cast<float>((1 + 0x1p-22) * time);
+      // Raised by more than rounding to Real may lower it.
+      end_ = static_cast<Real>((1 + 4 * kRounding<Real>)*time);
+    }
     // With a clearance, slabs along the meshes' axes let pass what is up to 1.7 clearances away. The gap of a pair
     // found so far tells more.
-    gap_.set(pair_.motion.clearance > 0 ? visitor_.across() : Vector{}, pair_.motion.clearance, visitor_.latest());
+    if (pair_.motion.clearance > 0) gap_.set(visitor_.across(), pair_.motion.clearance, seen_);
   }
-  void meetLeaves(const gpu::MeshNode& a, const gpu::MeshNode& b, float near);
 
   const MeshPair& pair_;
   PairVisitor& visitor_;
@@ -218,16 +220,14 @@ class StraightTest {
   TrianglePlacer placeA_, placeB_;
   GapTest gap_, lead_;
   NodeGap reach_;
+  double seen_ = -1;  // the visitor's latest t, of which the next two are times
   float latest_ = 0;
+  Real end_ = 0;
 };
 
 template <class Real>
-void StraightTest<Real>::meetLeaves(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
-  // Raised by more than rounding to Real may lower it.
-  const auto latest = [&] {
-    return static_cast<Real>((1 + 4 * kRounding<Real>)*pair_.motion.timeOf(visitor_.latest()));
-  };
-  const LeafTimes<Real> found = leaves_(a, b, near, latest());
+void StraightTest<Real>::meet(const gpu::MeshNode& a, const gpu::MeshNode& b, float near) {
+  const LeafTimes<Real> found = leaves_(a, b, near, end_);
   pairs_ += trianglesOf(a) * trianglesOf(b);
   for (unsigned pending = found.possible; pending != 0 && !visitor_.isDecided();) {
     int lane = std::countr_zero(pending);
@@ -235,10 +235,11 @@ void StraightTest<Real>::meetLeaves(const gpu::MeshNode& a, const gpu::MeshNode&
       if ((pending >> i & 1) != 0 && found.times.from[i] < found.times.from[lane]) lane = i;
     }
     pending &= ~(1u << lane);
-    if (found.times.from[lane] > Real(1 + 4 * kRounding<Real>) * (latest() - near)) return;
+    if (found.times.from[lane] > Real(1 + 4 * kRounding<Real>) * (end_ - near)) return;
     const TrianglePlacer::Placed &ofA = placeA_(a, lane & 1), &ofB = placeB_(b, lane >> 1);
     visitor_.consider({pair_.object, ofB.triangle, ofA.triangle}, {ofA.corners, ofB.corners},
                       static_cast<Axis>(found.axis[lane]));
+    update();
   }
 }
 

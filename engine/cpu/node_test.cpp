@@ -22,11 +22,6 @@ void cut(Times<Real>& times, const Lanes<Real>& middle, const Lanes<Real>& half)
   times.to = min(times.to, middle + half);
 }
 
-template <class Real>
-bool anyPositive(const Lanes<Real>& x) {
-  return x[0] > 0 || x[1] > 0 || x[2] > 0 || x[3] > 0;
-}
-
 /// Loads floats 4 * place to 4 * place + 3 of each node; out[i] has the i-th of them, one lane per node.
 void load(const FourNodes& nodes, int place, FourFloats (&out)[4]) {
   static_assert(sizeof(gpu::MeshNode) == 3 * sizeof(FourFloats));
@@ -140,7 +135,7 @@ Times<Real> NodeTest<Real>::operator()(const FourNodes& nodesA, const FourNodes&
   a.loadNormals(nodesA);
   b.loadNormals(nodesB);
   const Lanes<Real> left = times.to - max(times.from, Lanes<Real>(0));
-  if (!anyPositive(min(left, max(a.thinness(), b.thinness())))) return times;
+  if (above(min(left, max(a.thinness(), b.thinness())), Lanes<Real>(0)) == 0) return times;
   cutByNormal(times, a, b, alongA_);
   cutByNormal(times, b, a, alongB_);
   return times;

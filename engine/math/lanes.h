@@ -9,6 +9,22 @@ namespace radar {
 using FourFloats = float __attribute__((vector_size(16)));
 using TwoDoubles = double __attribute__((vector_size(16)));
 
+/// The signs of a vector's numbers, one bit each.
+template <class Vector>
+unsigned signsOf(const Vector& x) {
+#ifdef __SSE2__
+  if constexpr (sizeof(x[0]) == sizeof(float)) {
+    return static_cast<unsigned>(__builtin_ia32_movmskps(FourFloats(x)));
+  } else {
+    return static_cast<unsigned>(__builtin_ia32_movmskpd(TwoDoubles(x)));
+  }
+#else
+  unsigned bits = 0;
+  for (unsigned i = 0; i < sizeof(x) / sizeof(x[0]); ++i) bits |= unsigned{x[i] < 0} << i;
+  return bits;
+#endif
+}
+
 /// `min`, `max` and `select` compare x with y; if either is NaN they return the second choice, y or q.
 template <class Real>
 struct Lanes;
@@ -32,6 +48,8 @@ struct Lanes<float> {
   friend Lanes max(const Lanes& x, const Lanes& y) { return x.v > y.v ? x.v : y.v; }
   /// p if x > y, else q.
   friend Lanes select(const Lanes& x, const Lanes& y, const Lanes& p, const Lanes& q) { return x.v > y.v ? p.v : q.v; }
+  /// One bit per lane: whether x > y.
+  friend unsigned above(const Lanes& x, const Lanes& y) { return signsOf(x.v > y.v); }
   friend Lanes abs(const Lanes& x) { return FourFloats(Bits(x.v) & ~kSign); }
   /// x, with its sign changed where y is below 0.
   friend Lanes withSignOf(const Lanes& x, const Lanes& y) { return FourFloats(Bits(x.v) ^ (Bits(y.v) & kSign)); }
@@ -69,6 +87,10 @@ struct Lanes<double> {
   }
   friend Lanes select(const Lanes& x, const Lanes& y, const Lanes& p, const Lanes& q) {
     return {x.low > y.low ? p.low : q.low, x.high > y.high ? p.high : q.high};
+  }
+  /// One bit per lane: whether x > y.
+  friend unsigned above(const Lanes& x, const Lanes& y) {
+    return signsOf(x.low > y.low) | signsOf(x.high > y.high) << 2;
   }
   friend Lanes abs(const Lanes& x) { return {TwoDoubles(Bits(x.low) & ~kSign), TwoDoubles(Bits(x.high) & ~kSign)}; }
   friend Lanes withSignOf(const Lanes& x, const Lanes& y) {

@@ -24,41 +24,46 @@ using tools::Vec3;
 namespace {
 
 using Real = long double;
-using Points = distances::Points<Real>;
+// Where rounding of the former seems to find a bracket wrong.
+using Fine = boost::multiprecision::cpp_bin_float_quad;
 
 /// A pair of triangles on a query's way, relative to a corner of the sensor's.
+template <class Number>
 struct Passing {
-  Points a, b;
-  distances::Point<Real> unit;
-  Real end, size;
+  distances::Points<Number> a, b;
+  distances::Point<Number> unit;
+  Number end, size;
 };
 
-Passing passingOf(const oracle::Corners& a, const oracle::Corners& b, const Vec3& direction, Real end) {
-  Passing out{{}, {}, distances::pointOf<Real>(direction), end, 0};
+template <class Number>
+Passing<Number> passingOf(const oracle::Corners& a, const oracle::Corners& b, const Vec3& direction, Number end) {
+  using std::abs;
+  Passing<Number> out{{}, {}, distances::pointOf<Number>(direction), end, 0};
   if (direction != Vec3{}) out.unit /= out.unit.stableNorm();
   for (size_t i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
-      out.a[i][k] = Real(a[i][size_t(k)]) - a[0][size_t(k)];
-      out.b[i][k] = Real(b[i][size_t(k)]) - a[0][size_t(k)];
-      out.size = std::max({out.size, std::abs(out.a[i][k]), std::abs(out.b[i][k])});
+      out.a[i][k] = Number(a[i][size_t(k)]) - a[0][size_t(k)];
+      out.b[i][k] = Number(b[i][size_t(k)]) - a[0][size_t(k)];
+      out.size = std::max({out.size, Number(abs(out.a[i][k])), Number(abs(out.b[i][k]))});
     }
   }
-  for (Points* t : {&out.a, &out.b}) {
+  for (auto* t : {&out.a, &out.b}) {
     for (auto& p : *t) p /= out.size;
   }
   // Past this, they move apart.
-  out.end = std::min(Real(16), end / out.size);
+  out.end = std::min(Number(16), Number(end / out.size));
   return out;
 }
 
-Real leastOf(const Passing& pair) {
+template <class Number>
+Number leastOf(const Passing<Number>& pair) {
   return pair.size * distances::leastDistance(pair.a, pair.b, pair.unit, pair.end, 110);
 }
 
 /// Below every distance on the way.
-Real roughly(const Passing& pair) {
-  const auto middle = [](const Points& t) { return distances::Point<Real>((t[0] + t[1] + t[2]) / 3); };
-  const auto reach = [&](const Points& t) {
+Real roughly(const Passing<Real>& pair) {
+  const auto middle = [](const distances::Points<Real>& t) { return distances::Point<Real>((t[0] + t[1] + t[2]) / 3); };
+  const auto reach = [&](const distances::Points<Real>& t) {
     return std::max({(t[0] - middle(t)).norm(), (t[1] - middle(t)).norm(), (t[2] - middle(t)).norm()});
   };
   const distances::Point<Real> from = middle(pair.a), to = from + pair.end * pair.unit;
@@ -66,7 +71,7 @@ Real roughly(const Passing& pair) {
 }
 
 /// The last t at which they are within c; -1 if they never are.
-Real lastWithin(const Passing& pair, Real c) {
+Real lastWithin(const Passing<Real>& pair, Real c) {
   const auto isWithin = [&](Real t) { return distances::distanceAt(pair.a, pair.b, pair.unit, t) <= c / pair.size; };
   Real in = distances::nearestTime(pair.a, pair.b, pair.unit, pair.end, 110), out = pair.end;
   if (!isWithin(in)) return -1;
@@ -99,8 +104,9 @@ struct Counts {
 };
 
 /// World units of the sensor's way past an object.
-Real wayPast(const Scene& scene, const Query& query, const Vec3& direction) {
-  return oracle::isStep(scene, query) ? distances::pointOf<Real>(direction).stableNorm() : Real(query.distance);
+template <class Number = Real>
+Number wayPast(const Scene& scene, const Query& query, const Vec3& direction) {
+  return oracle::isStep(scene, query) ? distances::pointOf<Number>(direction).stableNorm() : Number(query.distance);
 }
 
 void checkExit(const Scene& scene, const Query& query, const std::vector<ObjectId>& skipped, const Result& exit,
@@ -159,10 +165,11 @@ void checkClosest(const Scene& scene, const Query& query, const std::vector<Obje
   Real least = INFINITY, size = 0, atNamed = INFINITY;
   forEachPair(scene, query, skipped, [&](const exact::PairName& name, const auto& a, const auto& b, const Vec3& d) {
     const Real whole = wayPast(scene, query, d);
-    Passing pair = passingOf(a, b, d, whole);
+    const Passing<Real> pair = passingOf(a, b, d, whole);
     const bool isNamed = name == exact::PairName{found.at.object, found.at.triB, found.at.triA};
     if (!isNamed && roughly(pair) > std::min<Real>(least, found.hi)) return;
-    const Real own = leastOf(pair);
+    Real own = leastOf(pair);
+    if (own < found.lo || isNamed) own = Real(leastOf(passingOf<Fine>(a, b, d, wayPast<Fine>(scene, query, d))));
     if (own < least) size = pair.size;
     least = std::min(least, own);
     if (!isNamed) return;
@@ -176,7 +183,8 @@ void checkClosest(const Scene& scene, const Query& query, const std::vector<Obje
     REQUIRE(found.at.object == kNone);
     return;
   }
-  const Real room = 1e-17L * size;
+  // That far the judge narrows times down.
+  const Real room = 1e-21L * size;
   REQUIRE(found.lo <= least + room);
   REQUIRE(found.hi >= least - room);
   REQUIRE(found.hi - found.lo <= std::max(1e-13L * size, 1e-8L * least));
@@ -191,7 +199,7 @@ void checkExitWithin(const Scene& scene, const Query& query, const Result& exit,
   bool isOpen = false;
   forEachPair(scene, query, {}, [&](const exact::PairName&, const auto& a, const auto& b, const Vec3& d) {
     const Real whole = wayPast(scene, query, d), rate = whole > 0 ? end / whole : 0;
-    const Passing pair = passingOf(a, b, d, whole);
+    const Passing<Real> pair = passingOf(a, b, d, whole);
     if (roughly(pair) > query.clearance) return;
     const Real slack = 1e-12L * (pair.size + Real(query.clearance));
     if (std::abs(leastOf(pair) - query.clearance) <= slack) isOpen = true;

@@ -41,7 +41,7 @@ Transform rigid(Random& random, const Vec3& at) {
 TEST_CASE("a plane and a point prove each first contact of a cutter that moves anyhow") {
   int hits = 0, clear = 0, overlaps = 0;
   Real widest = 0;
-  for (uint64_t seed = 0; seed < 5000; ++seed) {
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
     Random random(seed);
     const double scale = random.magnitude(-3, 3);
     const CutterKind kind = cutterOf(static_cast<int>(seed % kCutterKinds), random);
@@ -110,7 +110,7 @@ TEST_CASE("a plane and a point prove each first contact of a cutter that moves a
     }
   }
   CHECK(widest <= 1e-9);
-  CHECK(hits > 20000);
-  CHECK(clear > 10000);
-  CHECK(overlaps > 1000);
+  CHECK(hits > 4000);
+  CHECK(clear > 2000);
+  CHECK(overlaps > 200);
 }

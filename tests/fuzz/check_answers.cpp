@@ -87,9 +87,11 @@ std::string faultOfTurn(const Scene& scene, const Query& query, const Result& re
   if (query.skipOverlapping) return "";
   const test::TurnTruth truth(query, scene);
   const double slack = 1e-12 * (1 + std::abs(query.turn->angle)) * farthest(scene, query);
+  // What may leave counts once it is deeper than an eighth of the tolerance and twice the slack.
+  const double shallow = query.ignoreLeaving ? 1e-6 * farthest(scene, query) + 2 * query.slack.value_or(0) : 0;
   const double free = result.status == Status::clear ? 1 : result.lo;
   for (int k = 0; k <= kTimes && free > 0; ++k) {
-    if (truth.meet((1 - 1e-12) * free * k / kTimes, slack)) return "the surfaces meet before lo";
+    if (truth.meet((1 - 1e-12) * free * k / kTimes, slack + shallow)) return "the surfaces meet before lo";
   }
   const bool isDated = result.hi > 0 && result.hi <= 1 && !query.anyHit;
   return isDated && !truth.meet(result.hi, query.clearance > 0 ? -slack : 0) ? "nothing meets at hi" : "";

@@ -123,7 +123,7 @@ std::vector<std::string> seeds() {
           R"(["a.obj", "b.off", "parts.obj#1"], "scenes": [{"instances_file": "instances.stl", "motions": [[1, 0, 0, -3]]}],
  "queries": [{"id": "p", "scene": 0, "sensor": [1, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "motion": [0, 0.5, 4], "hits": "all"},
  {"id": "q", "scene": 0, "sensor": [2], "motion": [0, 0, 0], "skip_overlapping": true, "slack": 1e-9},
- {"id": "r", "scene": 0, "sensor": [2], "motion": [0, 0, 1], "turn": {"axis": [0, 1, 2], "angle": 1.5, "centre": [0, 0, 9]}},
+ {"id": "r", "scene": 0, "sensor": [2], "motion": [0, 0, 1], "turn": {"axis": [0, 1, 2], "angle": 1.5, "centre": [0, 0, 9]}, "ignore_leaving": true},
  {"id": "s", "scene": 0, "sensor": [2], "turn": {"to": [0,-1,0,2, 1,0,0,0, 0,0,1,3], "about": [0, 1, 0]}}]})",
       head + R"(["b.off"], "scenes": [{"assembly": "parts.obj", "deforms": []}, {"base": 0, "instances": [[0]]}],
  "queries": [{"id": "p", "scene": 1, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "clearance": 0.25, "closest": true, "exit": true},

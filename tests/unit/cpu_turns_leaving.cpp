@@ -115,6 +115,28 @@ TEST_CASE("a box that turns may leave the table that it rests on or slide over i
   }
 }
 
+TEST_CASE("a box does not sink into one of the same footprint, whose sides no edge of it crosses") {
+  Scene scene;
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
+  scene.addObject({.mesh = box});
+  Query query{.mesh = box};
+  query.ignoreLeaving = true;
+  const auto statusOf = [&](double height, double angle, double way) {
+    query.worldFromMesh.m[11] = height;
+    query.turn = Turn{{0, 0, 1}, angle, {}};
+    query.motion = Vector{0, 0, way};
+    return answerOf(scene, query).status;
+  };
+  CHECK(statusOf(2, 1e-9, -0.5) == Status::overlap);
+  CHECK(statusOf(2, 1e-9, 0.5) == Status::clear);
+  CHECK(statusOf(2, 1, 0) == Status::clear);
+  // Sunk in a little, it may leave only with so much slack.
+  CHECK(statusOf(2 - 1e-3, 0.5, 0.25) == Status::overlap);
+  query.slack = 2e-3;
+  CHECK(statusOf(2 - 1e-3, 0.5, 0.25) == Status::clear);
+  CHECK(statusOf(2 - 1e-3, 0.5, -0.25) == Status::overlap);
+}
+
 TEST_CASE("random boxes that touch others at the start block each other exactly if their interiors would overlap") {
   const uint32_t seed = GENERATE(from_range(test::seeds({1, 2, 3, 4})));
   Random random(seed);

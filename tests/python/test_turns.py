@@ -104,11 +104,12 @@ def test_messages_name_turns_and_what_does_not_go_with_them(gate):
         (cast(turns=([0, 0, 1], "x", [0, 0, 0])), "turns: angles: expected numbers of at most double precision"),
         (cast(turns=([0, 0, 1], [1, 2], np.zeros((3, 3)))), "got turns: angles (2,), turns: centres (3, 3)"),
         (cast([0, 0, 1], turns=turns, distances=1), "distances: expected none with turns"),
-        (cast(turns=turns, ignore_leaving=True, clearance=0.1), "turns: expected no ignoreLeaving beside it and a"),
         (cast(turns=turns, mode="sampled"), 'mode: expected "contact" or "reference" with turns, got "sampled"'),
     ):
         assert words in refusal(call)
-    assert scene.cast(rod, None, turns=turns, ignore_leaving=[False, True]).shape == (2,)
+    both = scene.cast(rod, None, turns=turns, ignore_leaving=[False, True], clearance=0.1)
+    assert [[*found] for found in both.reasons.values()] == [[1]]
+    assert list(both.reasons)[0] == "turns: expected no ignore_leaving beside it and a clearance"
 
 
 def test_two_poses_make_the_turn_that_leads_from_one_to_the_other(gate):

@@ -143,7 +143,7 @@ constexpr AnswerField kFields[] = {
      "Of a chain: the link that is touched, if it is no object; a line has its `other_link_name`, too."},
     {{{"other_mesh"}, kId, {linkOf<&LinksMet::otherMesh>}, kOfChain, kNowhere}, "Which of that link's meshes."},
     {{{"tri_a"}, kId, kIdOf<&Result::triA>, kOfContact, 128},
-     "The triangle of the sensor, or of the link's mesh, that touches it."},
+     "The triangle of the sensor, or of the link's mesh, that touches it; the part of a cutter, 0 for its end."},
     {{{"tri_b"}, kId, kIdOf<&Result::triB>, kOfContact, 136},
      "The triangle touched, of the object or of the other link's mesh."},
     {{{"feature_a"}, kFeature, kMember<&Result::featureA>, {When::always, When::always, When::always}, 154},

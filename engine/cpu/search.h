@@ -41,7 +41,7 @@ class Search {
   unsigned threads_;
   std::vector<QuerySearch> searches_;  // one per thread
   PlaceOrder order_;
-  double secondsPerQuery_ = 0;         // on one thread, in the last run
+  double secondsPerQuery_ = 0;  // on one thread, in the last run
 };
 
 }  // namespace radar::cpu

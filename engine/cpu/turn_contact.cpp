@@ -15,9 +15,8 @@ class TurnContact::Path final : public PairPath {
         resting_(pair.b),
         way_(minus(turning_.way(), contact.drift_)),
         drift_(contact.drift_),
-        mirrored_(contact.rule_.mirrored),
-        leaves_(contact.query_.ignoreLeaving) {
-    slack_ = leaves_ ? std::max(contact.rule_.slack, std::numeric_limits<double>::min()) : 0;
+        mirrored_(contact.rule_.mirrored) {
+    if (contact.query_.ignoreLeaving) slack_ = std::max(contact.rule_.slack, std::numeric_limits<double>::min());
     double most = norm1(way_), arm = 0, radius = 0;
     for (int i = 0; i < 3; ++i) {
       const Vector r = minus(start_[i], turning_.centre());
@@ -50,7 +49,7 @@ class TurnContact::Path final : public PairPath {
   }
   /// Exactly, without a clearance.
   Start atStart() const override {
-    if (leaves_) return beforeLeaving();
+    if (slack_ > 0) return beforeLeaving();
     if (clearance_ > 0 && certainlyWithin(start_, resting_, {}, clearance_)) return Start::meet;
     const Translation still(Vector{}, {});
     exact::EarliestContact touching(still);
@@ -83,7 +82,6 @@ class TurnContact::Path final : public PairPath {
   const exact::Triangle &start_, &resting_;
   const Vector way_, drift_;
   const exact::Mirrored mirrored_;
-  const bool leaves_;
   Turning::Circle circle_[3];
   exact::Triangle from_, b_;
 };

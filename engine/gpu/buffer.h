@@ -11,8 +11,8 @@
 namespace radar::gpu {
 
 /// Size of the elements.
-template <class T>
-VkDeviceSize bytesOf(const std::vector<T>& v) {
+template <class T, class Allocator>
+VkDeviceSize bytesOf(const std::vector<T, Allocator>& v) {
   return v.size() * sizeof(T);
 }
 

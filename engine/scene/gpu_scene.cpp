@@ -241,7 +241,7 @@ void GpuScene::stageMesh(const Mesh& mesh, const gpu::MeshRecord& record, Upload
     triangles.push_back(
         {{record.firstVertex + corner[0], record.firstVertex + corner[1], record.firstVertex + corner[2]}, id});
   }
-  std::vector<gpu::MeshNode> nodes = mesh.tree.nodes;
+  NodeVector<gpu::MeshNode> nodes = mesh.tree.nodes;
   for (gpu::MeshNode& node : nodes) {
     node.link += (node.link & gpu::kLinkLeaf) != 0 ? record.firstTriangle : record.firstNode;
   }
@@ -360,7 +360,7 @@ void GpuScene::stageObjects(const Scene::Impl& scene, const Overwritten& next, U
 }
 
 void GpuScene::stageTree(const ObjectTree& tree, const Overwritten& next, Upload& upload) {
-  const std::vector<gpu::ObjectNode>& nodes = tree.nodes();
+  const NodeVector<gpu::ObjectNode>& nodes = tree.nodes();
   if (buffers_->objectNodes.reserve(objectNodesOf(tree, next))) seen_.tree = 0;
   const auto add = [&](size_t first, size_t last) {
     const VkDeviceSize size = sizeof(gpu::ObjectNode);

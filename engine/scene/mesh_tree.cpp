@@ -48,6 +48,7 @@ class Builder {
     out.builtCost = cost(tree.nodes);
     out.nodes.resize(tree.nodes.size());
     out.below.resize(tree.nodes.size());
+    out.corners.resize(9 * out.order.size() + MeshTree::kPadding);
     fillAll(out, tree.nodes);
     for (size_t i = out.nodes.size(); i-- > 0;) {  // children come after their parents
       const BoxTree::Node& node = tree.nodes[i];
@@ -119,6 +120,10 @@ class Builder {
       node.link = gpu::kLinkLeaf | (from.count > 1 ? gpu::kLinkPair : 0) | from.first;
       const auto first = tree.order.begin() + from.first;
       tree.below[i] = {from.first, from.count, *std::min_element(first, first + from.count)};
+      float* out = &tree.corners[9 * size_t{from.first}];
+      for (uint32_t k = 0; k < from.count; ++k) {
+        for (int c = 0; c < 3; ++c) out = std::ranges::copy(corner(first[k], c), out).out;
+      }
     } else {
       node.link = from.child;
       tree.below[i].first = from.first;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/node_vector.h"
 #include "shaders/shared/interop.h"
 
 namespace radar {
@@ -17,8 +18,10 @@ inline bool isLeaf(const gpu::MeshNode& node) {
 
 /// In normalised local coordinates (Mesh::local, Mesh::unit).
 struct MeshTree {
-  std::vector<gpu::MeshNode> nodes;  ///< links are relative to the mesh's first node, or to its start in `order`
-  std::vector<uint32_t> order;       ///< triangle ids, leaf by leaf, so neighbours in space are close
+  NodeVector<gpu::MeshNode> nodes;       ///< links are relative to the mesh's first node, or to its start in `order`
+  std::vector<uint32_t> order;           ///< triangle ids, leaf by leaf, so neighbours in space are close
+  std::vector<float> corners;            ///< of the triangles in this order: x, y, z of each corner; then kPadding more
+  static constexpr size_t kPadding = 3;  ///< so that vectors of four may be loaded
   /// The range of `order` below a node, and its least triangle id.
   struct Below {
     uint32_t first, count, least;

@@ -9,6 +9,7 @@
 #include "math/rounding.h"
 #include "radar/scene.h"
 #include "scene/changed_pages.h"
+#include "scene/node_vector.h"
 #include "shaders/shared/interop.h"
 
 namespace radar {
@@ -35,7 +36,7 @@ class ObjectTree {
   /// Float boxes, in world coordinates minus anchor(), that contain the objects' world boxes. A leaf's link is
   /// kLinkLeaf plus its object's id. Empty without objects. The root is first; nodes may be left over from removed
   /// objects.
-  const std::vector<gpu::ObjectNode>& nodes() const { return nodes_; }
+  const NodeVector<gpu::ObjectNode>& nodes() const { return nodes_; }
   /// A point amid the objects when the tree was built; keeps a scene far from its origin precise.
   const Vector& anchor() const { return anchor_; }
   /// A box that contains all objects; empty if there have been none.
@@ -77,7 +78,7 @@ class ObjectTree {
 
   void touch(uint32_t node) { changed_.mark(node, next_); }
 
-  std::vector<gpu::ObjectNode> nodes_;
+  NodeVector<gpu::ObjectNode> nodes_;
   ChangedPages changed_;
   std::vector<uint32_t> parents_;  // by node; kNone: the root
   std::vector<uint32_t> leaves_;   // by object id; kNone: not in the tree

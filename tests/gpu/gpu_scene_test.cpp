@@ -15,13 +15,13 @@ namespace {
 using namespace radar;
 using test::elementsOf;
 
-template <class T>
-bool sameBits(const std::vector<T>& p, const std::vector<T>& q) {
+template <class T, class P = std::allocator<T>, class Q = std::allocator<T>>
+bool sameBits(const std::vector<T, P>& p, const std::vector<T, Q>& q) {
   return p.size() == q.size() && (p.empty() || std::memcmp(p.data(), q.data(), p.size() * sizeof(T)) == 0);
 }
 
-std::vector<gpu::MeshNode> nodesOf(const Mesh& mesh, const gpu::MeshRecord& record) {
-  std::vector<gpu::MeshNode> nodes = mesh.tree.nodes;
+NodeVector<gpu::MeshNode> nodesOf(const Mesh& mesh, const gpu::MeshRecord& record) {
+  NodeVector<gpu::MeshNode> nodes = mesh.tree.nodes;
   for (gpu::MeshNode& node : nodes) {
     node.link += (node.link & gpu::kLinkLeaf) != 0 ? record.firstTriangle : record.firstNode;
   }
@@ -65,7 +65,7 @@ void checkObject(const Scene::Impl& scene, ObjectId id, const GpuScene& copy) {
 }
 
 void checkTree(const GpuScene& copy, const Scene& scene) {
-  const std::vector<gpu::ObjectNode>& nodes = scene.impl().objectTree().nodes();
+  const NodeVector<gpu::ObjectNode>& nodes = scene.impl().objectTree().nodes();
   CHECK(sameBits(elementsOf(copy.buffers().objectNodes, 0, nodes.size()), nodes));
 }
 

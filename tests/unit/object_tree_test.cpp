@@ -148,7 +148,7 @@ TEST_CASE("a small move changes the boxes and the version but not the structure 
   Boxes boxes(4);
   boxes.add(100, 50);
   const ObjectTree& tree = boxes.tree();
-  const std::vector<gpu::ObjectNode> before = tree.nodes();
+  const NodeVector<gpu::ObjectNode> before = tree.nodes();
   uint64_t version = tree.version();
   CHECK(boxes.tree().version() == version);
   Transform pose = boxes.scene.object(7).worldFromMesh;
@@ -293,13 +293,13 @@ TEST_CASE("the pages of changed nodes have every node that an edit changes, and 
   Boxes boxes(12);
   boxes.add(10'000, 100);
   const ObjectTree& tree = boxes.tree();
-  std::vector<gpu::ObjectNode> before = tree.nodes();
+  NodeVector<gpu::ObjectNode> before = tree.nodes();
   size_t changed = 0, missed = 0, named = 0;
   uint32_t edits = 0;
   for (; edits < 1'500; ++edits) {
     const uint64_t seen = tree.version();
     boxes.edit(edits % 3, 100);
-    const std::vector<gpu::ObjectNode>& nodes = boxes.tree().nodes();
+    const NodeVector<gpu::ObjectNode>& nodes = boxes.tree().nodes();
     std::vector<bool> isNamed(nodes.size());
     tree.changedNodes().forEachSince(seen, [&](size_t first, size_t last) {
       std::fill(isNamed.begin() + static_cast<ptrdiff_t>(first), isNamed.begin() + static_cast<ptrdiff_t>(last), true);

@@ -1,10 +1,13 @@
 // Certifies first contacts in double precision.
 #pragma once
 
-#include "cpu/leaf_test.h"
 #include "exact/contact.h"
 
 namespace radar::cpu {
+
+/// A separating axis of triangles a and b: 0: the normal of a; 1: the normal of b; 2 + 3 i + k: across edge i of a and
+/// edge k of b. Edge i goes from corner i to the next.
+using Axis = int;
 
 /// The features by which triangles a and b touch: 0, 1 or 2: that corner of a and the face of b; 3, 4 or 5: corner
 /// (less 3) of b and the face of a; 6 + 3 i + k: edge i of a and edge k of b.

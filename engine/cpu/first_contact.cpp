@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "cpu/certificate.h"
-
 namespace radar::cpu {
 
 FirstContact::FirstContact(const Query& query, const Translation& motion)

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cpu/approach.h"
-#include "cpu/leaf_test.h"
+#include "cpu/certificate.h"
 #include "exact/blocking.h"
 #include "exact/earliest_contact.h"
 #include "exact/nearness.h"

@@ -2,32 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 namespace radar::cpu {
 
+inline namespace RADAR_WIDTH {
+
 namespace {
 
-/// The triangles of a leaf, in its mesh's normalised frame.
+/// The triangles of leaves, in their mesh's normalised frame.
 template <class Real>
 struct Corners {
   LaneVec<double> first;  ///< corner 0
   LaneVec<Real> edge[3];
 
-  /// `alternate`: the lanes hold triangles 0 1 0 1, else 0 0 1 1.
-  Corners(const Mesh& mesh, const gpu::MeshNode& leaf, bool alternate) {
-    const uint32_t* order = &mesh.tree.order[leaf.link & gpu::kLinkItem];
-    const uint32_t* one = &mesh.indices[3 * size_t{order[0]}];
-    const uint32_t* two = (leaf.link & gpu::kLinkPair) != 0 ? &mesh.indices[3 * size_t{order[1]}] : one;
-    const auto scale = static_cast<float>(1 / mesh.unit);
-    FourFloats corner[3][3];
-    for (int i = 0; i < 3; ++i) {
-      const float* p = &mesh.positions[3 * size_t{one[i]}];
-      const float* q = &mesh.positions[3 * size_t{two[i]}];
-      for (int k = 0; k < 3; ++k) {
-        const FourFloats lanes = alternate ? FourFloats{p[k], q[k], p[k], q[k]} : FourFloats{p[k], p[k], q[k], q[k]};
-        corner[i][k] = (lanes - static_cast<float>(mesh.origin[k])) * scale;
+  /// `alternate`: the four lanes of a leaf hold triangles 0 1 0 1, else 0 0 1 1.
+  Corners(const MeshTree& tree, const gpu::MeshNode* const (&leaves)[LeafPairs::kMost], bool alternate) {
+    // All numbers of triangle 0, and of triangle 1 or 0 again, four at a time.
+    Floats zero[3], one[3];
+    for (int n = 0; n < 3; ++n) {
+      FourFloats ofZero[LeafPairs::kMost], ofOne[LeafPairs::kMost];
+      for (int m = 0; m < LeafPairs::kMost; ++m) {
+        const float* const from = &tree.corners[9 * size_t{leaves[m]->link & gpu::kLinkItem} + 4 * n];
+        std::memcpy(&ofZero[m], from, sizeof(FourFloats));
+        std::memcpy(&ofOne[m], from + ((leaves[m]->link & gpu::kLinkPair) != 0 ? 9 : 0), sizeof(FourFloats));
       }
+      zero[n] = joined(ofZero);
+      one[n] = joined(ofOne);
     }
+    Floats corner[3][3];
+    const auto take = [&]<int n>(std::integral_constant<int, n>) {
+      const Floats &x = zero[n / 4], &y = one[n / 4];
+      corner[n / 3][n % 3] = alternate ? alternating<n % 4>(x, y) : twiceEach<n % 4>(x, y);
+    };
+    [&]<int... n>(std::integer_sequence<int, n...>) {
+      (take(std::integral_constant<int, n>()), ...);
+    }
+    (std::make_integer_sequence<int, 9>());
     for (int k = 0; k < 3; ++k) {
       first[k] = corner[0][k];
       for (int i = 0; i < 3; ++i) edge[i][k] = Lanes<Real>(corner[(i + 1) % 3][k]) - Lanes<Real>(corner[i][k]);
@@ -35,9 +47,21 @@ struct Corners {
   }
 };
 
-unsigned lanesOf(const gpu::MeshNode& a, const gpu::MeshNode& b) {
-  const unsigned ofA = (a.link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0101;
-  return ofA & ((b.link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0011);
+unsigned lanesOf(const LeafPairs& pairs) {
+  unsigned lanes = 0;
+  for (int m = 0; m < pairs.count; ++m) {
+    const unsigned ofA = (pairs.a[m]->link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0101;
+    const unsigned ofB = (pairs.b[m]->link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0011;
+    lanes |= (ofA & ofB) << (4 * m);
+  }
+  return lanes;
+}
+
+template <class Real>
+Lanes<Real> beginningOf(const LeafPairs& pairs) {
+  Real near[LeafPairs::kMost] = {};
+  std::copy(std::begin(pairs.near), std::end(pairs.near), near);
+  return inFours(near);
 }
 
 /// Three times the error of an axis, and the clearance; and the speed to which lower ones are raised, which changes
@@ -45,8 +69,8 @@ unsigned lanesOf(const gpu::MeshNode& a, const gpu::MeshNode& b) {
 template <class Real>
 struct Margin {
   Lanes<Real> width, speed;
-  Margin(const Lanes<Real>& error, const Lanes<Real>& clearance, Real duration)
-      : width(Lanes<Real>(3) * error + clearance), speed(error * Lanes<Real>(1 / duration)) {}
+  Margin(const Lanes<Real>& error, const Lanes<Real>& clearance, const Lanes<Real>& duration)
+      : width(Lanes<Real>(3) * error + clearance), speed(error * (Lanes<Real>(1) / duration)) {}
 };
 
 /// Intersects the intervals of the axes. A NaN leaves the result unchanged.
@@ -65,8 +89,8 @@ struct Collected {
     to = min(at + wide, to);
   }
   /// One bit per lane whose pair may meet by `duration`.
-  unsigned possible(Real duration) const {
-    return ~(above(from, Lanes<Real>(duration)) | above(from, to) | above(Lanes<Real>(Real(0)), to));
+  unsigned possible(const Lanes<Real>& duration) const {
+    return ~(above(from, duration) | above(from, to) | above(Lanes<Real>(Real(0)), to));
   }
 };
 
@@ -100,11 +124,12 @@ LeafTest<Real>::LeafTest(const Mesh& meshA, const Mesh& meshB, const RelativePla
 }
 
 template <class Real>
-void LeafTest<Real>::showA(const gpu::MeshNode& leaf) {
-  if (a_.leaf == &leaf) return;
-  a_.leaf = &leaf;
-  a_.size = 4 * edgeError_;
-  const Corners<Real> own(meshA_, leaf, true);
+void LeafTest<Real>::showA(const LeafPairs& pairs) {
+  if (std::equal(std::begin(pairs.a), std::end(pairs.a), a_.leaves)) return;
+  std::copy(std::begin(pairs.a), std::end(pairs.a), a_.leaves);
+  const Corners<Real> own(meshA_.tree, pairs.a, true);
+  Real size[LeafPairs::kMost];
+  std::fill_n(size, LeafPairs::kMost, 4 * edgeError_);
   for (int k = 0; k < 3; ++k) {
     // In doubles, so that a small difference of two corners is precise.
     using D = Lanes<double>;
@@ -113,45 +138,52 @@ void LeafTest<Real>::showA(const gpu::MeshNode& leaf) {
     LaneVec<Real> lanes;
     for (int j = 0; j < 3; ++j) {
       lanes[j] = static_cast<Real>(row[j]);
-      a_.size += 2 * static_cast<Real>(std::abs(row[j])) * leaf.halfExtent[j];
+      for (int m = 0; m < LeafPairs::kMost; ++m) {
+        size[m] += 2 * static_cast<Real>(std::abs(row[j])) * pairs.a[m]->halfExtent[j];
+      }
     }
     for (int i = 0; i < 3; ++i) a_.edge[i][k] = dot<Real>(lanes, own.edge[i]);
   }
+  a_.size = inFours(size);
   cross<Real>(a_.edge[0], a_.edge[1], a_.normal);
 }
 
 template <class Real>
-void LeafTest<Real>::showB(const gpu::MeshNode& leaf) {
-  if (b_.leaf == &leaf) return;
-  b_.leaf = &leaf;
-  b_.size = 4 * edgeError_;
-  const Corners<Real> own(meshB_, leaf, false);
+void LeafTest<Real>::showB(const LeafPairs& pairs) {
+  if (std::equal(std::begin(pairs.b), std::end(pairs.b), b_.leaves)) return;
+  std::copy(std::begin(pairs.b), std::end(pairs.b), b_.leaves);
+  const Corners<Real> own(meshB_.tree, pairs.b, false);
+  Real size[LeafPairs::kMost];
+  std::fill_n(size, LeafPairs::kMost, 4 * edgeError_);
   for (int k = 0; k < 3; ++k) {
     b_.corner[k] = own.first[k];
     for (int i = 0; i < 3; ++i) b_.edge[i][k] = own.edge[i][k];
-    b_.size += 2 * leaf.halfExtent[k];
+    for (int m = 0; m < LeafPairs::kMost; ++m) size[m] += 2 * pairs.b[m]->halfExtent[k];
   }
+  b_.size = inFours(size);
   cross<Real>(b_.edge[0], b_.edge[1], b_.normal);
 }
 
 template <class Real>
-LeafTimes<Real> LeafTest<Real>::operator()(const gpu::MeshNode& a, const gpu::MeshNode& b, Real begin, Real end) {
+LeafTimes<Real> LeafTest<Real>::timesOf(const LeafPairs& pairs, Real end) {
   using L = Lanes<Real>;
-  LeafTimes<Real> out{{-Real(INFINITY), Real(INFINITY)}, Real(0), lanesOf(a, b)};
+  LeafTimes<Real> out{-Real(INFINITY), Real(0), lanesOf(pairs)};
   if (!usable_) return out;
 
-  showA(a);
-  showB(b);
+  showA(pairs);
+  showB(pairs);
+  const L begin = beginningOf<Real>(pairs);
+  const Lanes<double> start = beginningOf<double>(pairs);
   LaneVec<Real> gap, travel;  // gap: from corner 0 of A's triangle to that of B's; travel: of A per unit of time
   L gapSize = Real(0);
   for (int k = 0; k < 3; ++k) {
-    const Lanes<double> moved = offset_[k] + double(begin) * travel_[k];
+    const Lanes<double> moved = offset_[k] + start * travel_[k];
     gap[k] = rounded<Real>(b_.corner[k] - (a_.corner[k] + moved));
     gapSize = gapSize + abs(gap[k]);
     travel[k] = static_cast<Real>(travel_[k]);
   }
-  const Real duration = std::max(Real(1 + 4 * kRounding<Real>) * (end - begin), Real(kLeastSpeed<Real>));
-  const L reach = gapSize + L(a_.size + b_.size + duration * travelSize_);
+  const L duration = max(Real(1 + 4 * kRounding<Real>) * (end - begin), L(Real(kLeastSpeed<Real>)));
+  const L reach = gapSize + a_.size + b_.size + duration * travelSize_;
   const L error = L(positionError_) + L(Real(32 * kRounding<Real>)) * reach;
 
   LaneVec<Real> alpha, beta;
@@ -162,20 +194,20 @@ LeafTimes<Real> LeafTest<Real>::operator()(const gpu::MeshNode& a, const gpu::Me
   Collected<Real> collected;
   const L zero = Real(0), half = Real(0.5);
   const L lowB = min(zero, min(alpha[0], -alpha[2])), highB = max(zero, max(alpha[0], -alpha[2]));
-  const Margin<Real> marginA(L(a_.size) * (L(a_.size) * error + L(2 * edgeError_) * reach),
-                             L(a_.size * a_.size * clearance_), duration);
+  const Margin<Real> marginA(a_.size * (a_.size * error + L(2 * edgeError_) * reach), a_.size * a_.size * clearance_,
+                             duration);
   collected.add(dot<Real>(a_.normal, gap) + half * (lowB + highB), half * (highB - lowB), dot<Real>(a_.normal, travel),
                 marginA, 0);
   const L lowA = min(zero, min(beta[0], -beta[2])), highA = max(zero, max(beta[0], -beta[2]));
-  const Margin<Real> marginB(L(b_.size) * (L(b_.size) * error + L(2 * edgeError_) * reach),
-                             L(b_.size * b_.size * clearance_), duration);
+  const Margin<Real> marginB(b_.size * (b_.size * error + L(2 * edgeError_) * reach), b_.size * b_.size * clearance_,
+                             duration);
   collected.add(dot<Real>(b_.normal, gap) - half * (lowA + highA), half * (highA - lowA), dot<Real>(b_.normal, travel),
                 marginB, 1);
   out.possible &= collected.possible(duration);
   if (out.possible == 0) return out;
 
-  const Margin<Real> margin(L(a_.size * b_.size) * error + L(edgeError_ * (a_.size + b_.size)) * reach,
-                            L(a_.size * b_.size * clearance_), duration);
+  const Margin<Real> margin(a_.size * b_.size * error + edgeError_ * (a_.size + b_.size) * reach,
+                            a_.size * b_.size * clearance_, duration);
   for (int i = 0; i < 3; ++i) {
     LaneVec<Real> gapAcross, travelAcross;
     cross<Real>(gap, a_.edge[i], gapAcross);
@@ -188,12 +220,14 @@ LeafTimes<Real> LeafTest<Real>::operator()(const gpu::MeshNode& a, const gpu::Me
     out.possible &= collected.possible(duration);
     if (out.possible == 0) return out;
   }
-  out.times = {collected.from, collected.to};
+  out.from = begin + collected.from;
   out.axis = collected.axis;
   return out;
 }
 
 template class LeafTest<float>;
 template class LeafTest<double>;
+
+}  // namespace RADAR_WIDTH
 
 }  // namespace radar::cpu

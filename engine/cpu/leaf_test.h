@@ -1,24 +1,42 @@
-// Bounds the times at which triangles of two leaves can meet, for up to four pairs at a time, by the separating axes of
-// each pair. docs/method.md derives the error bounds.
+// Bounds the times at which triangles of leaves can meet, for up to four pairs of triangles of each pair of leaves, by
+// the separating axes of each pair. docs/method.md derives the error bounds.
 #pragma once
 
+#include "cpu/certificate.h"
 #include "cpu/node_test.h"
 
 namespace radar::cpu {
 
-/// A separating axis of triangles a and b: 0: the normal of a; 1: the normal of b; 2 + 3 i + k: across edge i of a and
-/// edge k of b. Edge i goes from corner i to the next.
-using Axis = int;
+inline namespace RADAR_WIDTH {
 
-/// Times of the pairs of two leaves, of A and B: triangles i of A and k of B are in lane i + 2 k.
+/// Pairs of leaves, of A and B, that are tested together, four lanes each: triangles i of A and k of B are in lane
+/// i + 2 k of the four.
+struct LeafPairs {
+  static constexpr int kMost = kLanes / 4;
+  const gpu::MeshNode *a[kMost] = {}, *b[kMost] = {};
+  float near[kMost] = {};  ///< the pair does not meet before, in the pair of meshes' unit of time
+  int count = 0;
+
+  void add(const gpu::MeshNode& leafA, const gpu::MeshNode& leafB, float earliest) {
+    // What is not filled repeats the last.
+    for (int i = count; i < kMost; ++i) {
+      a[i] = &leafA;
+      b[i] = &leafB;
+      near[i] = earliest;
+    }
+    ++count;
+  }
+};
+
+/// Times of the pairs of triangles, by the lanes of LeafPairs.
 template <class Real>
 struct LeafTimes {
-  Times<Real> times;  ///< in the pair's unit of time, no earlier than `begin`
+  Lanes<Real> from;   ///< bounds when they meet, in the pair's unit of time; off by a rounding
   Lanes<Real> axis;   ///< the Axis that gives `from`
   unsigned possible;  ///< one bit per lane whose pair may meet
 };
 
-/// Tests leaves of a mesh A, in motion, and of a mesh B. For one thread at a time: it caches the last leaf of each
+/// Tests leaves of a mesh A, in motion, and of a mesh B. For one thread at a time: it caches the last leaves of each
 /// mesh.
 template <class Real>
 class LeafTest {
@@ -26,19 +44,19 @@ class LeafTest {
   /// `relative`: how B sees A. The meshes outlive the test.
   LeafTest(const Mesh& meshA, const Mesh& meshB, const RelativePlacement& relative);
 
-  /// Tests which pairs may meet from `begin` to `end`. The caller knows that none meets before `begin`.
-  LeafTimes<Real> operator()(const gpu::MeshNode& a, const gpu::MeshNode& b, Real begin, Real end);
+  /// Tests which pairs may meet by `end`.
+  LeafTimes<Real> timesOf(const LeafPairs& pairs, Real end);
 
  private:
-  /// Triangles of a leaf in B's frame; those of A without the translation between the frames.
+  /// Triangles of leaves in B's frame; those of A without the translation between the frames.
   struct Side {
-    const gpu::MeshNode* leaf = nullptr;
+    const gpu::MeshNode* leaves[LeafPairs::kMost] = {};
     LaneVec<double> corner;  ///< corner 0
     LaneVec<Real> edge[3], normal;
-    Real size;  ///< bound on the sum of an edge's absolute components
+    Lanes<Real> size;  ///< bound on the sum of an edge's absolute components
   };
-  void showA(const gpu::MeshNode& leaf);
-  void showB(const gpu::MeshNode& leaf);
+  void showA(const LeafPairs& pairs);
+  void showB(const LeafPairs& pairs);
 
   const Mesh &meshA_, &meshB_;
   Side a_, b_;
@@ -50,5 +68,7 @@ class LeafTest {
   Real edgeError_ = 0;      // error of an edge, except its own rounding
   bool usable_ = true;
 };
+
+}  // namespace RADAR_WIDTH
 
 }  // namespace radar::cpu

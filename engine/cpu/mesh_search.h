@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "cpu/first_contact.h"
-#include "cpu/node_test.h"
 #include "cpu/path_contact.h"
 #include "cpu/path_part.h"
 #include "query/cancelled.h"
@@ -51,6 +50,12 @@ struct PathPair {
 PathPair pairOf(const PlacedMesh& body, const PathPart& part, const PlacedMesh& object, ObjectId name,
                 const Vector& drift, double clearance);
 
+/// Two nodes that cannot meet before `near`.
+struct OpenPair {
+  float near;
+  uint32_t a, b;
+};
+
 /// Reuses its memory between searches. For one thread at a time.
 class MeshSearch {
  public:
@@ -61,17 +66,14 @@ class MeshSearch {
   void run(const PathPair& pair, PathContact& contact, uint64_t& pairs, const std::stop_token& stop);
 
  private:
-  /// Two nodes that cannot meet before `near`.
-  struct Open {
-    float near;
-    uint32_t a, b;
-  };
+  OpenPair* openFor(const PlacedMesh& a, const PlacedMesh& b);
 
-  template <class Opener, class Test>
-  void descend(const MeshTree& treeA, const MeshTree& treeB, const Opener& opener, ObjectId object, double near,
-               Test& test, PairVisitor& visitor, const std::stop_token& stop);
-
-  std::vector<Open> open_;
+  std::vector<OpenPair> open_;
 };
+
+/// How many lanes a search may have on this processor, ascending; it takes the most. No answer depends on it.
+std::vector<int> searchWidths();
+/// For tests: of all searches from now on. `lanes` is one of searchWidths().
+void setSearchWidth(int lanes);
 
 }  // namespace radar::cpu

@@ -5,6 +5,8 @@
 
 namespace radar::cpu {
 
+inline namespace RADAR_WIDTH {
+
 namespace {
 
 // Slabs along normals are tested if one of the two is thinner than this fraction of its box.
@@ -23,11 +25,16 @@ void cut(Times<Real>& times, const Lanes<Real>& middle, const Lanes<Real>& half)
 }
 
 /// Loads floats 4 * place to 4 * place + 3 of each node; out[i] has the i-th of them, one lane per node.
-void load(const FourNodes& nodes, int place, FourFloats (&out)[4]) {
+void load(const NodeLanes& nodes, int place, Floats (&out)[4]) {
   static_assert(sizeof(gpu::MeshNode) == 3 * sizeof(FourFloats));
-  FourFloats rows[4];
+  Floats rows[4];
   for (int i = 0; i < 4; ++i) {
-    std::memcpy(&rows[i], reinterpret_cast<const char*>(nodes[i]) + place * sizeof(FourFloats), sizeof(FourFloats));
+    FourFloats fours[kLanes / 4];
+    for (int k = 0; k < kLanes / 4; ++k) {
+      const char* const node = reinterpret_cast<const char*>(nodes[4 * k + i]);
+      std::memcpy(&fours[k], node + place * sizeof(FourFloats), sizeof(FourFloats));
+    }
+    rows[i] = joined(fours);
   }
   transpose(rows, out);
 }
@@ -61,22 +68,22 @@ NodeTest<Real>::Axes::Axes(const RelativePlacement& relative) {
   }
 }
 
-/// Boxes and slabs of four nodes.
+/// Boxes and slabs of nodes, one in each lane.
 template <class Real>
 struct NodeTest<Real>::Nodes {
   LaneVec<Real> centre, half, normal;
   Lanes<Real> slabMiddle, slabHalf;
 
-  void loadBoxes(const FourNodes& nodes) {
-    FourFloats lanes[4];
+  void loadBoxes(const NodeLanes& nodes) {
+    Floats lanes[4];
     load(nodes, 0, lanes);
     for (int k = 0; k < 3; ++k) centre[k] = lanes[k];
     load(nodes, 1, lanes);
     for (int k = 0; k < 3; ++k) half[k] = lanes[k];
     slabMiddle = lanes[3];
   }
-  void loadNormals(const FourNodes& nodes) {
-    FourFloats lanes[4];
+  void loadNormals(const NodeLanes& nodes) {
+    Floats lanes[4];
     load(nodes, 2, lanes);
     for (int k = 0; k < 3; ++k) normal[k] = lanes[k];
     slabHalf = lanes[3];
@@ -124,7 +131,7 @@ template <class Real>
 }
 
 template <class Real>
-Times<Real> NodeTest<Real>::operator()(const FourNodes& nodesA, const FourNodes& nodesB) const {
+Times<Real> NodeTest<Real>::operator()(const NodeLanes& nodesA, const NodeLanes& nodesB) const {
   Nodes a, b;
   a.loadBoxes(nodesA);
   b.loadBoxes(nodesB);
@@ -143,5 +150,7 @@ Times<Real> NodeTest<Real>::operator()(const FourNodes& nodesA, const FourNodes&
 
 template class NodeTest<float>;
 template class NodeTest<double>;
+
+}  // namespace RADAR_WIDTH
 
 }  // namespace radar::cpu

@@ -1,11 +1,13 @@
-// Bounds the times at which nodes of two meshes' trees can meet, for four node pairs at a time, by the slabs along
-// their boxes' axes and along their mean normals. docs/method.md derives the error bounds.
+// Bounds the times at which nodes of two meshes' trees can meet, for as many pairs as there are lanes, by the slabs
+// along their boxes' axes and along their mean normals. docs/method.md derives the error bounds.
 #pragma once
 
 #include "cpu/pair_motion.h"
 #include "math/lanes.h"
 
 namespace radar::cpu {
+
+inline namespace RADAR_WIDTH {
 
 /// Bound on the relative rounding error of an operation in a lane.
 template <class Real>
@@ -19,13 +21,13 @@ inline constexpr double kLeastSpeed = sizeof(Real) == sizeof(float) ? 0x1p-20 : 
 template <class Real>
 inline constexpr double kMostMagnitude = sizeof(Real) == sizeof(float) ? 0x1p30 : 0x1p200;
 
-/// Time bounds for contact of each of four pairs; a pair with from > to does not meet.
+/// Time bounds for contact of each lane's pair; a pair with from > to does not meet.
 template <class Real>
 struct Times {
   Lanes<Real> from, to;
 };
 
-using FourNodes = std::array<const gpu::MeshNode*, 4>;
+using NodeLanes = std::array<const gpu::MeshNode*, kLanes>;
 
 /// Tests nodes of a mesh A, in motion, and of a mesh B.
 template <class Real>
@@ -35,7 +37,7 @@ class NodeTest {
   NodeTest(const RelativePlacement& fromA, const RelativePlacement& fromB) : alongA_(fromA), alongB_(fromB) {}
 
   /// In the pair's unit of time; `from` may be before the start.
-  Times<Real> operator()(const FourNodes& a, const FourNodes& b) const;
+  Times<Real> operator()(const NodeLanes& a, const NodeLanes& b) const;
 
  private:
   /// A RelativePlacement, divided by the speed along each axis: a vertex q of the frame's own mesh and p of the other
@@ -55,5 +57,7 @@ class NodeTest {
 
   Axes alongA_, alongB_;
 };
+
+}  // namespace RADAR_WIDTH
 
 }  // namespace radar::cpu

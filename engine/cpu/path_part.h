@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cpu/node_test.h"
+#include "cpu/pair_motion.h"
 
 namespace radar::cpu {
 
@@ -60,26 +60,6 @@ struct PathPlacement {
     Vector axis;    ///< of length 1; 0: in any direction
   };
   explicit PathPlacement(const Frame& frame);
-};
-
-/// As NodeTest, by the slabs along both meshes' axes.
-class PathTest {
- public:
-  PathTest(const PathPlacement& fromA, const PathPlacement& fromB) : alongA_(fromA), alongB_(fromB) {}
-  /// Time runs from 0 to 1 in the part.
-  Times<double> operator()(const FourNodes& a, const FourNodes& b) const;
-  /// Whether the first of each stay apart along the first one's axes.
-  static bool areApart(const PathPlacement& fromOwn, const FourNodes& own, const FourNodes& other);
-
- private:
-  struct Axes {
-    LaneVec<double> matrix[2][3], size[2][3], offset[2], slack;
-    explicit Axes(const PathPlacement& placement);
-  };
-  struct Boxes;
-  static void cut(Times<double>& times, const Boxes& own, const Boxes& other, const Axes& axes);
-
-  Axes alongA_, alongB_;
 };
 
 }  // namespace radar::cpu

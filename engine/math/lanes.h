@@ -1,22 +1,41 @@
-// Four floats or doubles at a time, with the vector extension of GCC and Clang: it needs only the instructions that
-// every 64-bit processor has.
+// Several floats or doubles at a time, with the vector extension of GCC and Clang. Four, which needs only the
+// instructions that every 64-bit processor has, unless the file that includes this says how many.
 #pragma once
 
 #include <cstdint>
+#include <cstring>
+#include <utility>
+
+#ifndef RADAR_LANES
+#define RADAR_LANES 4
+#define RADAR_WIDTH lanes4
+#endif
 
 namespace radar {
 
+// What depends on the number of lanes is another thing for each: a program may have several.
+inline namespace RADAR_WIDTH {
+
+inline constexpr int kLanes = RADAR_LANES;
+
+using Floats = float __attribute__((vector_size(4 * kLanes)));
+using HalfOfDoubles = double __attribute__((vector_size(4 * kLanes)));
 using FourFloats = float __attribute__((vector_size(16)));
-using TwoDoubles = double __attribute__((vector_size(16)));
 
 /// The signs of a vector's numbers, one bit each.
 template <class Vector>
 unsigned signsOf(const Vector& x) {
-#ifdef __SSE2__
+#if RADAR_LANES == 8
   if constexpr (sizeof(x[0]) == sizeof(float)) {
-    return static_cast<unsigned>(__builtin_ia32_movmskps(FourFloats(x)));
+    return static_cast<unsigned>(__builtin_ia32_movmskps256(Floats(x)));
   } else {
-    return static_cast<unsigned>(__builtin_ia32_movmskpd(TwoDoubles(x)));
+    return static_cast<unsigned>(__builtin_ia32_movmskpd256(HalfOfDoubles(x)));
+  }
+#elif defined(__SSE2__)
+  if constexpr (sizeof(x[0]) == sizeof(float)) {
+    return static_cast<unsigned>(__builtin_ia32_movmskps(Floats(x)));
+  } else {
+    return static_cast<unsigned>(__builtin_ia32_movmskpd(HalfOfDoubles(x)));
   }
 #else
   unsigned bits = 0;
@@ -31,13 +50,13 @@ struct Lanes;
 
 template <>
 struct Lanes<float> {
-  FourFloats v;
+  Floats v;
   Lanes() = default;
-  Lanes(float x) : v{x, x, x, x} {}                          // NOLINT: in all lanes
-  Lanes(FourFloats x) : v(x) {}                              // NOLINT
-  Lanes(const float (&x)[4]) : v{x[0], x[1], x[2], x[3]} {}  // NOLINT
+  Lanes(float x) : v(x - Floats{}) {}                                 // NOLINT: in all lanes
+  Lanes(Floats x) : v(x) {}                                           // NOLINT
+  Lanes(const float (&x)[kLanes]) { std::memcpy(&v, x, sizeof(v)); }  // NOLINT
   float operator[](int i) const { return v[i]; }
-  FourFloats floats() const { return v; }
+  Floats floats() const { return v; }
 
   friend Lanes operator+(const Lanes& x, const Lanes& y) { return x.v + y.v; }
   friend Lanes operator-(const Lanes& x, const Lanes& y) { return x.v - y.v; }
@@ -50,28 +69,40 @@ struct Lanes<float> {
   friend Lanes select(const Lanes& x, const Lanes& y, const Lanes& p, const Lanes& q) { return x.v > y.v ? p.v : q.v; }
   /// One bit per lane: whether x > y.
   friend unsigned above(const Lanes& x, const Lanes& y) { return signsOf(x.v > y.v); }
-  friend Lanes abs(const Lanes& x) { return FourFloats(Bits(x.v) & ~kSign); }
+  friend Lanes abs(const Lanes& x) { return Floats(Bits(x.v) & ~kSign); }
   /// x, with its sign changed where y is below 0.
-  friend Lanes withSignOf(const Lanes& x, const Lanes& y) { return FourFloats(Bits(x.v) ^ (Bits(y.v) & kSign)); }
+  friend Lanes withSignOf(const Lanes& x, const Lanes& y) { return Floats(Bits(x.v) ^ (Bits(y.v) & kSign)); }
 
  private:
-  using Bits = uint32_t __attribute__((vector_size(16)));
+  using Bits = uint32_t __attribute__((vector_size(4 * kLanes)));
   static constexpr uint32_t kSign = 0x80000000u;
 };
 
 template <>
 struct Lanes<double> {
-  TwoDoubles low, high;
+  HalfOfDoubles low, high;
   Lanes() = default;
-  Lanes(double x) : low{x, x}, high{x, x} {}  // NOLINT: in all lanes
-  Lanes(TwoDoubles x, TwoDoubles y) : low(x), high(y) {}
-  Lanes(const double (&x)[4]) : low{x[0], x[1]}, high{x[2], x[3]} {}  // NOLINT
-  Lanes(FourFloats x) : low{x[0], x[1]}, high{x[2], x[3]} {}          // NOLINT
-  double operator[](int i) const { return i < 2 ? low[i] : high[i - 2]; }
+  Lanes(double x) : low(x - HalfOfDoubles{}), high(low) {}  // NOLINT: in all lanes
+  Lanes(HalfOfDoubles x, HalfOfDoubles y) : low(x), high(y) {}
+  Lanes(const double (&x)[kLanes]) {  // NOLINT
+    std::memcpy(&low, x, sizeof(low));
+    std::memcpy(&high, x + kLanes / 2, sizeof(high));
+  }
+  Lanes(Floats x) {  // NOLINT
+    for (int i = 0; i < kLanes / 2; ++i) {
+      low[i] = x[i];
+      high[i] = x[kLanes / 2 + i];
+    }
+  }
+  double operator[](int i) const { return i < kLanes / 2 ? low[i] : high[i - kLanes / 2]; }
   /// Rounded to nearest.
-  FourFloats floats() const {
-    return FourFloats{static_cast<float>(low[0]), static_cast<float>(low[1]), static_cast<float>(high[0]),
-                      static_cast<float>(high[1])};
+  Floats floats() const {
+    Floats out;
+    for (int i = 0; i < kLanes / 2; ++i) {
+      out[i] = static_cast<float>(low[i]);
+      out[kLanes / 2 + i] = static_cast<float>(high[i]);
+    }
+    return out;
   }
 
   friend Lanes operator+(const Lanes& x, const Lanes& y) { return {x.low + y.low, x.high + y.high}; }
@@ -90,15 +121,17 @@ struct Lanes<double> {
   }
   /// One bit per lane: whether x > y.
   friend unsigned above(const Lanes& x, const Lanes& y) {
-    return signsOf(x.low > y.low) | signsOf(x.high > y.high) << 2;
+    return signsOf(x.low > y.low) | signsOf(x.high > y.high) << (kLanes / 2);
   }
-  friend Lanes abs(const Lanes& x) { return {TwoDoubles(Bits(x.low) & ~kSign), TwoDoubles(Bits(x.high) & ~kSign)}; }
+  friend Lanes abs(const Lanes& x) {
+    return {HalfOfDoubles(Bits(x.low) & ~kSign), HalfOfDoubles(Bits(x.high) & ~kSign)};
+  }
   friend Lanes withSignOf(const Lanes& x, const Lanes& y) {
-    return {TwoDoubles(Bits(x.low) ^ (Bits(y.low) & kSign)), TwoDoubles(Bits(x.high) ^ (Bits(y.high) & kSign))};
+    return {HalfOfDoubles(Bits(x.low) ^ (Bits(y.low) & kSign)), HalfOfDoubles(Bits(x.high) ^ (Bits(y.high) & kSign))};
   }
 
  private:
-  using Bits = uint64_t __attribute__((vector_size(16)));
+  using Bits = uint64_t __attribute__((vector_size(4 * kLanes)));
   static constexpr uint64_t kSign = uint64_t{1} << 63;
 };
 
@@ -111,23 +144,65 @@ Lanes<Real> dot(const LaneVec<Real>& p, const LaneVec<Real>& q) {
 }
 
 template <class Real>
-void cross(const LaneVec<Real>& p, const LaneVec<Real>& q, LaneVec<Real>& out) {
+[[gnu::always_inline]] inline void cross(const LaneVec<Real>& p, const LaneVec<Real>& q, LaneVec<Real>& out) {
   out[0] = p[1] * q[2] - p[2] * q[1];
   out[1] = p[2] * q[0] - p[0] * q[2];
   out[2] = p[0] * q[1] - p[1] * q[0];
 }
 
-/// The columns of the matrix with these rows.
-inline void transpose(const FourFloats (&rows)[4], FourFloats (&out)[4]) {
-  const auto& [x, y, z, w] = rows;
-  const FourFloats xyLow = __builtin_shufflevector(x, y, 0, 4, 1, 5),
-                   xyHigh = __builtin_shufflevector(x, y, 2, 6, 3, 7);
-  const FourFloats zwLow = __builtin_shufflevector(z, w, 0, 4, 1, 5),
-                   zwHigh = __builtin_shufflevector(z, w, 2, 6, 3, 7);
-  out[0] = __builtin_shufflevector(xyLow, zwLow, 0, 1, 4, 5);
-  out[1] = __builtin_shufflevector(xyLow, zwLow, 2, 3, 6, 7);
-  out[2] = __builtin_shufflevector(xyHigh, zwHigh, 0, 1, 4, 5);
-  out[3] = __builtin_shufflevector(xyHigh, zwHigh, 2, 3, 6, 7);
+/// In each lane, that of x or, from kLanes on, of y which `from` names: a constant function of the lane.
+template <class Vector, class From>
+Vector picked(const Vector& x, const Vector& y, From) {
+  return [&]<int... lanes>(std::integer_sequence<int, lanes...>) {
+    return __builtin_shufflevector(x, y, From{}(lanes)...);
+  }
+  (std::make_integer_sequence<int, kLanes>());
 }
+
+/// Four lanes of each.
+inline Floats joined(const FourFloats (&fours)[kLanes / 4]) {
+#if RADAR_LANES == 8
+  return __builtin_shufflevector(fours[0], fours[1], 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  return fours[0];
+#endif
+}
+
+/// Each number in four lanes.
+inline Lanes<float> inFours(const float (&x)[kLanes / 4]) {
+  FourFloats fours[kLanes / 4];
+  for (int i = 0; i < kLanes / 4; ++i) fours[i] = x[i] - FourFloats{};
+  return joined(fours);
+}
+inline Lanes<double> inFours(const double (&x)[kLanes / 4]) {
+  return {x[0] - HalfOfDoubles{}, x[kLanes / 4 - 1] - HalfOfDoubles{}};
+}
+
+/// The i-th of each four lanes of x, twice, then of y; and x y x y.
+template <int i>
+Floats twiceEach(const Floats& x, const Floats& y) {
+  return picked(x, y, [](int lane) { return lane / 4 * 4 + i + (lane % 4 < 2 ? 0 : kLanes); });
+}
+template <int i>
+Floats alternating(const Floats& x, const Floats& y) {
+  return picked(x, y, [](int lane) { return lane / 4 * 4 + i + (lane % 2 == 0 ? 0 : kLanes); });
+}
+
+/// Of four floats per lane, the i-th in out[i]; rows[i] holds those of lane i, and of lane 4 + i.
+inline void transpose(const Floats (&rows)[4], Floats (&out)[4]) {
+  const auto low = [](int lane) { return lane / 4 * 4 + lane % 4 / 2 + (lane % 2 == 0 ? 0 : kLanes); };
+  const auto high = [](int lane) { return lane / 4 * 4 + 2 + lane % 4 / 2 + (lane % 2 == 0 ? 0 : kLanes); };
+  const auto first = [](int lane) { return lane / 4 * 4 + lane % 2 + (lane % 4 < 2 ? 0 : kLanes); };
+  const auto second = [](int lane) { return lane / 4 * 4 + 2 + lane % 2 + (lane % 4 < 2 ? 0 : kLanes); };
+  const auto& [x, y, z, w] = rows;
+  const Floats xyLow = picked(x, y, low), xyHigh = picked(x, y, high);
+  const Floats zwLow = picked(z, w, low), zwHigh = picked(z, w, high);
+  out[0] = picked(xyLow, zwLow, first);
+  out[1] = picked(xyLow, zwLow, second);
+  out[2] = picked(xyHigh, zwHigh, first);
+  out[3] = picked(xyHigh, zwHigh, second);
+}
+
+}  // namespace RADAR_WIDTH
 
 }  // namespace radar

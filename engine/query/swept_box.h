@@ -3,10 +3,11 @@
 #pragma once
 
 #include "exact/translation.h"
-#include "math/lanes.h"
 #include "scene/object_tree.h"
 
 namespace radar {
+
+using TwoDoubles = double __attribute__((vector_size(16)));
 
 class SweptBox {
  public:

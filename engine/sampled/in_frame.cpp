@@ -12,10 +12,10 @@ namespace {
 
 using FloatLanes = Lanes<float>;
 
-FloatLanes fourOf(const float* values) {
-  FourFloats four;
-  std::memcpy(&four, values, sizeof(four));
-  return four;
+FloatLanes lanesOf(const float* values) {
+  Floats lanes;
+  std::memcpy(&lanes, values, sizeof(lanes));
+  return lanes;
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ Box tightBox(const Mesh& mesh, const Affine& m) {
       high = max(at, high);
     };
     size_t i = 0;
-    for (; i + 4 <= count; i += 4) add(fourOf(px + i), fourOf(py + i), fourOf(pz + i));
+    for (; i + kLanes <= count; i += kLanes) add(lanesOf(px + i), lanesOf(py + i), lanesOf(pz + i));
     for (; i < count; ++i) add(px[i], py[i], pz[i]);
     box.lo[row] = std::min({low[0], low[1], low[2], low[3]}) + m[4 * row + 3];
     box.hi[row] = std::max({high[0], high[1], high[2], high[3]}) + m[4 * row + 3];

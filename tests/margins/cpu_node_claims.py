@@ -187,6 +187,7 @@ class LeafAxes:
                 "showA": UNKNOWN,
                 "showB": UNKNOWN,
                 "lanesOf": UNKNOWN,
+                "beginningOf": lambda pairs: plain("begin"),
                 "add": lambda *arguments: self.added.append(arguments),
                 "possible": UNKNOWN,
             },
@@ -208,7 +209,7 @@ class LeafAxes:
             "clearance_": positive("c"),
             "usable_": True,
         }
-        evaluator.call("operator()", UNKNOWN, UNKNOWN, plain("begin"), plain("end"), members=members)
+        evaluator.call("timesOf", UNKNOWN, plain("end"), members=members)
 
     def _evaluator(self, **conditions):
         def convert(number):
@@ -282,10 +283,10 @@ def of_leaves(real, sources):
         evaluator = Evaluator(sources, CPU_DOUBLES, globals={"D": lambda x: x})
         placing = "D(row[0]) * own.first[0] + D(row[1]) * own.first[1] + D(row[2]) * own.first[2]"
         corner = evaluator.expression("showA", placing, row=matrix[k], own={"first": vector("p")})
-        moving = {"offset_": offset, "travel_": travel, "begin": plain("begin"), "k": k}
-        moved = evaluator.expression("operator()", "offset_[k] + double(begin) * travel_[k]", **moving)
+        moving = {"offset_": offset, "travel_": travel, "start": plain("begin"), "k": k}
+        moved = evaluator.expression("timesOf", "offset_[k] + start * travel_[k]", **moving)
         corners = {"a_": {"corner": {k: corner}}, "b_": {"corner": vector("q")}, "moved": moved, "k": k}
-        gap = evaluator.expression("operator()", "b_.corner[k] - (a_.corner[k] + moved)", **corners)
+        gap = evaluator.expression("timesOf", "b_.corner[k] - (a_.corner[k] + moved)", **corners)
         rules = at_most({f"{name}{j}": REACH[j] for name in "pq" for j in range(3)} | {"begin": Polynomial.constant(1)})
         yield Inequality(f"position, axis {k}", position, rounding + gap.error, [without_flushing, rules])
 
@@ -301,7 +302,7 @@ def claims():
     for title, owner, constants, files, statement in (
         ("boxes of nodes", "Axes::Axes", ["16 * kRounding"], NODE_FILES, by_boxes),
         ("normals of nodes", "Axes::Axes", ["128 * kRounding"], NODE_FILES, by_normals),
-        ("triangles of leaves", "operator()", triangles, LEAF_FILES, by_triangles),
+        ("triangles of leaves", "timesOf", triangles, LEAF_FILES, by_triangles),
         ("errors of leaves", "LeafTest", errors, LEAF_FILES, of_leaves),
     ):
         for numbers, real in (("floats", CPU_FLOATS), ("doubles", CPU_DOUBLES)):

@@ -47,6 +47,12 @@ struct Pair {
         fromB(MeshAxes(placementB.linear), placementA, pairMotion, 1) {}
 };
 
+NodeLanes inAllLanes(const gpu::MeshNode& node) {
+  NodeLanes lanes;
+  lanes.fill(&node);
+  return lanes;
+}
+
 /// Checks that all pairs of nodes above the triangles admit contact at `time`, in either precision.
 void checkNodes(const Pair& pair, uint32_t triA, uint32_t triB, double time) {
   const NodeTest<float> inFloats(pair.fromA, pair.fromB);
@@ -62,12 +68,12 @@ void checkNodes(const Pair& pair, uint32_t triA, uint32_t triB, double time) {
       narrow(span, pair.fromB, b, a);
       REQUIRE(span.from <= time);
       REQUIRE(time <= span.to);
-      const auto floats = inFloats({&a, &a, &a, &a}, {&b, &b, &b, &b});
-      const auto doubles = inDoubles({&a, &a, &a, &a}, {&b, &b, &b, &b});
-      REQUIRE(floats.from[3] <= time);
-      REQUIRE(time <= floats.to[3]);
-      REQUIRE(doubles.from[3] <= time);
-      REQUIRE(time <= doubles.to[3]);
+      const auto floats = inFloats(inAllLanes(a), inAllLanes(b));
+      const auto doubles = inDoubles(inAllLanes(a), inAllLanes(b));
+      REQUIRE(floats.from[kLanes - 1] <= time);
+      REQUIRE(time <= floats.to[kLanes - 1]);
+      REQUIRE(doubles.from[kLanes - 1] <= time);
+      REQUIRE(time <= doubles.to[kLanes - 1]);
     }
   }
 }
@@ -88,11 +94,13 @@ void checkLeaves(const Pair& pair, uint32_t triA, uint32_t triB, double time) {
   const unsigned iA = pair.a.tree.order[a.link & gpu::kLinkItem] == triA ? 0 : 1;
   const unsigned iB = pair.b.tree.order[b.link & gpu::kLinkItem] == triB ? 0 : 1;
   const auto above = static_cast<Real>(time * (1 + 4 * kRounding<Real>));
-  const auto below = static_cast<Real>(time * (1 - 4 * kRounding<Real>));
-  for (const Real begin : {Real(0), Real(0.5) * below, below}) {
+  const auto below = static_cast<float>(time * (1 - 4 * kRounding<float>));
+  for (const float begin : {0.0f, 0.5f * below, below}) {
     for (const Real end : {above, Real(1)}) {
       INFO("from " << begin << " to " << end);
-      REQUIRE((test(a, b, begin, std::max(begin, end)).possible >> (iA + 2 * iB) & 1) == 1);
+      LeafPairs pairs;
+      pairs.add(a, b, begin);
+      REQUIRE((test.timesOf(pairs, std::max(Real(begin), end)).possible >> (iA + 2 * iB) & 1) == 1);
     }
   }
 }

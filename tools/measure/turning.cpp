@@ -144,6 +144,10 @@ void moveArm(double turn, Extent extent, MakeRigidBodies* makeBodies, Json& repo
   if (free.empty()) return;
   const double ours = medianTime(extent, [&] { results = sweeper.run(free); }) / static_cast<double>(free.size());
   addRow(report, name, "free", free.size(), ours * static_cast<double>(free.size()), 1, touching(results, isTouching));
+  ChainSweeper onAll(player.scene(), cell.chain);
+  const double together = medianTime(extent, [&] { results = onAll.run(free); });
+  addRow(report, name, "free, on all threads", free.size(), together,
+         together / static_cast<double>(free.size()) / ours, touching(results, isTouching));
   const std::unique_ptr<RigidBodies> bodies = makeBodies(cell.workload);
   if (bodies == nullptr) return;
   // Without the links' conflicts with each other, which ours include.

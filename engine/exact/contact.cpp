@@ -24,6 +24,16 @@ unsigned edgeSpan(int from, int sideOfFrom, int sideOfTo) {
   return (sideOfTo != 0 ? 1u << from : 0) | (sideOfFrom != 0 ? 1u << next(from) : 0);
 }
 
+/// Of a span's corners that are in one place, as of a point or a segment, only the first.
+unsigned distinct(unsigned corners, const Triangle& t) {
+  for (int i = 1; i < 3; ++i) {
+    for (int k = 0; k < i; ++k) {
+      if ((corners >> k & 1) != 0 && t[i] == t[k]) corners &= ~(1u << i);
+    }
+  }
+  return corners;
+}
+
 /// Finds the first and the last of the events added. If several events share an end, the choice depends on the events
 /// only, not on their order; the span of the end is that of all.
 class Ends {
@@ -43,7 +53,7 @@ class Ends {
     if (first < 0 || (first == 0 && precedes(event, events_[first_]))) first_ = own;
     if (first <= 0) atFirst_ = first < 0 ? span : atFirst_ | span;
   }
-  std::optional<Interval> interval(Ahead ahead) {
+  std::optional<Interval> interval(const Triangle& a, const Triangle& b, Ahead ahead) {
     if (count_ == 0) return std::nullopt;
     last_ = first_;
     atLast_ = atFirst_;
@@ -52,7 +62,8 @@ class Ends {
     // between the ends include points inside it, which all corners span.
     const Span& own = spans_[first_];
     const bool isSharp = own.a == atFirst_.a && own.b == atFirst_.b && std::popcount(own.a) + std::popcount(own.b) == 4;
-    return Interval{events_[first_], events_[last_], atFirst_, atLast_, between_, isSharp};
+    const auto spanned = [&](const Span& span) { return Span{distinct(span.a, a), distinct(span.b, b)}; };
+    return Interval{events_[first_], events_[last_], spanned(atFirst_), spanned(atLast_), spanned(between_), isSharp};
   }
 
  private:
@@ -199,7 +210,7 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vect
   Ends ends;
   if (signs.allZero) {
     addPlanar(a, b, direction, ends);
-    return ends.interval(ahead);
+    return ends.interval(a, b, ahead);
   }
   // These include every basic solution of the linear programme: least s at which a point of a, moved, is a point of b.
   for (int i = 0; i < 3; ++i) {
@@ -210,7 +221,7 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vect
       ends.add(edgeEdge(direction, a[i], a[next(i)], b[k], b[next(k)]), signs.edgesSpan(i, k));
     }
   }
-  return ends.interval(ahead);
+  return ends.interval(a, b, ahead);
 }
 
 Features Span::features() const {

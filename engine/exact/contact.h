@@ -60,7 +60,8 @@ struct Features {
   Feature a = Feature::none, b = Feature::none;
 };
 
-/// The corners of two triangles that span every point at which they touch: bit i is set if corner i does.
+/// The corners of two triangles that span every point at which they touch: bit i is set if corner i does, and none
+/// before it is in the same place.
 struct Span {
   unsigned a = 0, b = 0;
   Features features() const;

@@ -132,6 +132,55 @@ TEST_CASE("a capsule touches with its side, with an end, and with both along a f
   Plate().with(capsule({1, 2, 3}, {1, 2, 3}, 2), {0, -1, 2}).checkHit(3, kVertex, kFace);
 }
 
+TEST_CASE("a point touches as a vertex, and a segment as a vertex or an edge, never as a face") {
+  const RoundShape point = ball(2), segment = capsule({0, 0, 0}, {2, 0, 0}, 2),
+                   upright = capsule({0, 0, 0}, {0, 0, 3}, 2);
+  for (const auto& [shape, at, own, other] : {std::tuple{point, Vec3{1, 1, 5}, kVertex, kFace},
+                                              {point, Vec3{1, 0, 5}, kVertex, kEdge},
+                                              {point, Vec3{4, 0, 5}, kVertex, kVertex},
+                                              {upright, Vec3{1, 1, 5}, kVertex, kFace},
+                                              {upright, Vec3{0, 1, 5}, kVertex, kEdge},
+                                              {segment, Vec3{-1, 1, 5}, kEdge, kFace},
+                                              {segment, Vec3{0.5, 1, 5}, kEdge, kFace},
+                                              {segment, Vec3{-1, 4, 5}, kEdge, kVertex},
+                                              {segment, Vec3{0.5, 0, 5}, kEdge, kEdge},
+                                              {segment, Vec3{4, 0, 5}, kVertex, kVertex}}) {
+    CAPTURE(at, shape.positions.size());
+    const auto check = [&, a = own, b = other](const Result& result) {
+      CHECK(result.featureA == a);
+      CHECK(result.featureB == b);
+    };
+    Plate plate;
+    Query& query = plate.with(shape, at).query;
+    query.closest = query.exit = true;
+    check(plate.answers().lists[0].closest->at);
+    query.clearance = 0;
+    check(plate.checkHit(5));
+    check(*plate.answers().lists[0].exit);
+    query.worldFromMesh.m[11] = 0;
+    query.direction = {0, 0, 1};
+    check(plate.answer());
+    check(*plate.answers().lists[0].exit);
+    check(plate.answers().lists[0].closest->at);
+  }
+}
+
+TEST_CASE("a point that is touched is a vertex, and a segment an edge") {
+  Scene scene;
+  const MeshId plate = scene.addMesh(std::vector<float>{0, 0, 0, 4, 0, 0, 0, 4, 0}, std::vector<uint32_t>{0, 1, 2});
+  const RoundShape point = ball(0), segment = capsule({0, 0, 0}, {2, 0, 0}, 0);
+  scene.addObject({scene.addMesh(point.positions, point.indices), tools::placedAt({1, 1, -5})});
+  scene.addObject({scene.addMesh(segment.positions, segment.indices), tools::placedAt({0.5, 1, -6})});
+  const Query query{.mesh = plate, .direction = {0, 0, -1}, .distance = 9, .hits = kAllHits};
+  const std::vector<Result> hits = CpuSweeper(scene, 1).run({&query, 1}).lists[0].hits;
+  REQUIRE(hits.size() == 2);
+  CHECK(hits[0].featureB == kVertex);
+  CHECK(hits[0].featureA == kFace);
+  CHECK(hits[0].point == Vec3{1, 1, -5});
+  CHECK(hits[1].featureB == kEdge);
+  CHECK(hits[1].featureA == kFace);
+}
+
 TEST_CASE("the radius is in world units, whatever the pose") {
   Plate plate;
   plate.with(ball(2), {1, 1, 5}).query.worldFromMesh.m[0] = 100;

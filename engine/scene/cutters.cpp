@@ -77,22 +77,24 @@ Cutter taperCutter(double radius, double angle, double tipRadius, double length)
 }
 
 std::vector<RingHull> hullsOf(const Cutter& cutter) {
-  if (cutter.parts.empty()) throw Error("addCutter: expected one part or more");
+  if (cutter.parts.empty()) throw Error("addCutter: parts: expected one or more");
   std::vector<RingHull> out;
   for (size_t i = 0; i < cutter.parts.size(); ++i) {
-    const std::string part = "part " + std::to_string(i) + ": ";
+    const std::string part = "parts[" + std::to_string(i) + "]";
     double bottom = kMostLength, top = -kMostLength, widest = 0;
-    for (const Ring& ring : cutter.parts[i]) {
-      require(std::abs(ring.height) <= kMostLength, "addCutter", part + "height: expected at most 2^100", ring.height);
-      require(ring.radius >= 0 && ring.radius <= kMostLength, "addCutter", part + "radius: expected 0 to 2^100",
+    for (size_t k = 0; k < cutter.parts[i].size(); ++k) {
+      const Ring& ring = cutter.parts[i][k];
+      const std::string at = part + "[" + std::to_string(k) + "]: ";
+      require(std::abs(ring.height) <= kMostLength, "addCutter", at + "height: expected at most 2^100", ring.height);
+      require(ring.radius >= 0 && ring.radius <= kMostLength, "addCutter", at + "radius: expected 0 to 2^100",
               ring.radius);
-      require(ring.corner >= 0 && ring.corner <= kMostLength, "addCutter", part + "corner: expected 0 to 2^100",
+      require(ring.corner >= 0 && ring.corner <= kMostLength, "addCutter", at + "corner: expected 0 to 2^100",
               ring.corner);
       bottom = std::min(bottom, ring.height - ring.corner);
       top = std::max(top, ring.height + ring.corner);
       widest = std::max(widest, ring.radius + ring.corner);
     }
-    if (!(bottom < top && widest > 0)) throw Error("addCutter: " + part + "expected rings that span a solid");
+    if (!(bottom < top && widest > 0)) throw Error("addCutter: " + part + ": expected rings that span a solid");
     out.emplace_back(cutter.parts[i]);
   }
   return out;

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <thread>
 
+#include "batch/query_file.h"
 #include "cli/program.h"
 #include "cyber_radar/line_input.h"
 #include "support/catch.h"
@@ -135,8 +136,39 @@ TEST_CASE("a query that only the engine can refuse is named, too") {
   folder.write("lines", line("a", -1) + line("b", -1, ", \"batch\": 1" + slack) + bad);
   CHECK_THAT(runProgram(folder, "stream q.json <lines").err, Contains("standard input:2: slack: " + words));
   writeScene(folder, line("a", -1) + "," + bad);
-  checkRefused(folder, "query q.json", "query \"bad\": slack: " + words);
-  checkRefused(folder, "query q.json --check", "query \"bad\": slack: " + words);
+  checkRefused(folder, "query q.json", "q.json: queries[1].slack: " + words);
+  checkRefused(folder, "query q.json --check", "q.json: queries[1].slack: " + words);
+}
+
+TEST_CASE("a cutter that is not placed rigidly is refused at its place, in JSON, arrays and lines") {
+  const ScratchFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+  nlohmann::json file = nlohmann::json::parse(R"({"format": "cyber-radar-queries-1",
+    "meshes": ["a.obj", {"shape": "flat", "radius": 1, "length": 5}], "scenes": [{"id": "a", "instances": [[0]]}]})");
+  nlohmann::json query = {{"id", "p"}, {"scene", 0}, {"sensor", {1}}, {"dir", {0, 0, -1}}, {"D", 8}};
+  file["queries"] = {query};
+  query["id"] = "grown";
+  query["sensor"] = {1, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 5};
+  file["queries"].push_back(query);
+  folder.write("q.json", file.dump());
+  const std::string words = "a cutter: expected a rigid pose";
+  for (const char* check : {"", " --check"}) {
+    checkRefused(folder, std::string("query q.json") + check, "q.json: queries[1].sensor: " + words);
+  }
+  std::vector<std::string> warnings;
+  const radar::tools::Workload workload = radar::tools::QueryFile((folder.path() / "q.json").string(), warnings).all();
+  radar::tools::writeQueryFile(workload, folder.path() / "arrays", true);
+  // A cutter has no file.
+  nlohmann::json arrays = nlohmann::json::parse(folder.read("arrays/queries.json"));
+  arrays["meshes"][1] = file["meshes"][1];
+  folder.write("arrays/queries.json", arrays.dump());
+  checkRefused(folder, "query arrays/queries.json", "arrays/queries.npy: pose[1]: " + words);
+  file["queries"].erase(1);
+  folder.write("q.json", file.dump());
+  folder.write("lines", query.dump() + "\n");
+  const Run run = runProgram(folder, "stream q.json <lines");
+  CHECK(run.status == 2);
+  CHECK_THAT(run.err, Contains("standard input:1: sensor: " + words));
 }
 
 TEST_CASE("a stream ends with its input, which is not the query file") {

@@ -144,8 +144,9 @@ TEST_CASE("what a cutter cannot do is refused by name") {
   CHECK_THROWS_WITH(coneCutter(1, 0.1, 9, 1), test::StartsWith("coneCutter: tipRadius: "));
   CHECK_THROWS_WITH(coneCutter(1, 0.1, 9), test::Contains("where the cone ends"));
   CHECK_THROWS_WITH(taperCutter(1, 0.5, 0.95, 9), test::Contains("so that the cone is wider"));
-  CHECK_THROWS_WITH(plate.scene.addCutter({}), test::Contains("expected one part or more"));
-  CHECK_THROWS_WITH(plate.scene.addCutter({{{{0, 1}}}}), test::Contains("part 0: expected rings that span a solid"));
+  CHECK_THROWS_WITH(plate.scene.addCutter({}), test::StartsWith("addCutter: parts: expected one or more"));
+  CHECK_THROWS_WITH(plate.scene.addCutter({{{{0, 1}}}}),
+                    test::StartsWith("addCutter: parts[0]: expected rings that span a solid"));
   CHECK_THROWS_WITH(plate.scene.addCutter({{{{0, -1}, {1, 1}}}}),
-                    test::Contains("part 0: radius: expected 0 to 2^100"));
+                    test::Contains("parts[0][0]: radius: expected 0 to 2^100"));
 }

@@ -86,8 +86,13 @@ const Column* BinaryQueries::column(const char* name, const char* kinds, const s
   return found;
 }
 
+void BinaryQueries::refuse(const std::string& key, uint64_t index, const std::string& problem) const {
+  const std::string column = key == "sensor" ? "pose" : key == "turn" ? "turn_angle" : key;
+  throw InputError(name_, column + "[" + std::to_string(index) + "]", problem);
+}
+
 void BinaryQueries::refuse(const Column& column, uint64_t index, const std::string& problem) const {
-  throw InputError(name_, column.name + "[" + std::to_string(index) + "]", problem);
+  refuse(column.name, index, problem);
 }
 
 double BinaryQueries::finite(const Column& column, uint64_t index, uint64_t part) const {
@@ -190,10 +195,7 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   }
   query.clearance = withRadius(query.clearance, world_.meshes[query.mesh].radius);
   const auto [key, wrong] = conflictIn(world_, query);
-  if (key == "turn") refuse(*angle_, index, wrong);
-  for (size_t i = 0; i < fields_.size() && !wrong.empty(); ++i) {
-    if (queryFields()[i].name == key) refuse(*fields_[i], index, wrong);
-  }
+  if (!wrong.empty()) refuse(key, index, wrong);
   if (mode_) {
     query.mode = static_cast<AnswerMode>(whole(*mode_, index, 2, "0 for sampled, 1 for contact or 2 for reference"));
     const std::string reason = exactOnly(world_, query);

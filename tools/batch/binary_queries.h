@@ -26,6 +26,8 @@ class BinaryQueries {
   QuerySpec read(uint64_t index) const;
   /// What `mesh` and `pose` say, likewise.
   Instance placed(uint64_t index) const;
+  /// Throws InputError that names file, column and index. `key`: of the query, as in JSON.
+  [[noreturn]] void refuse(const std::string& key, uint64_t index, const std::string& problem) const;
   /// The whole file.
   std::string_view bytes() const { return columns_.bytes(); }
 

@@ -67,8 +67,17 @@ ModesAsked modesOf(const Workload& workload) {
   return modes;
 }
 
+std::string inKeys(std::string_view wrong) {
+  std::string words = inOptions(wrong);
+  for (const auto& [option, key] : {std::pair{"direction: ", "dir: "}, std::pair{"distance: ", "D: "}}) {
+    if (words.starts_with(option)) words.replace(0, std::string_view(option).size(), key);
+  }
+  return words;
+}
+
 QueryFile::QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs) {
   JsonQueryFile json = readJsonQueryFile(file, warnings, outputs);
+  name_ = std::move(json.name);
   world_ = std::move(json.workload);
   bases_ = std::move(json.bases);
   if (json.queriesFile) {
@@ -97,6 +106,13 @@ std::span<const QuerySpec> QueryFile::read(uint64_t first, uint64_t count, std::
 QuerySpec QueryFile::query(const std::string& name, std::string_view json) const {
   const nlohmann::json document = parseJson(name, json);
   return queryFrom(JsonValue(name, document), world_, bases_);
+}
+
+void QueryFile::refuse(uint64_t number, const std::string& wrong) const {
+  const size_t end = wrong.find(": ");
+  const std::string key = wrong.substr(0, end), problem = wrong.substr(end + 2);
+  if (binary_) binary_->refuse(key, number, problem);
+  throw InputError(name_, "queries[" + std::to_string(number) + "]." + key, problem);
 }
 
 Workload QueryFile::all() && {

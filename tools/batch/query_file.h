@@ -56,11 +56,14 @@ class QueryFile {
   /// A query in JSON, as it would stand in the file; another one may have its id. Throws InputError that begins with
   /// `name`.
   QuerySpec query(const std::string& name, std::string_view json) const;
+  /// Throws InputError at a query's place; `wrong` as of inKeys().
+  [[noreturn]] void refuse(uint64_t number, const std::string& wrong) const;
   const ModesAsked& modes() const { return modes_; }
   /// A hash of all that the answers depend on: bytes of the files, but of meshes only what was read.
   const std::string& fingerprint() const { return fingerprint_; }
 
  private:
+  std::string name_;
   Workload world_;
   std::vector<std::array<double, 3>> bases_;  ///< of the meshes that may be sensors
   std::unique_ptr<BinaryQueries> binary_;     ///< none: the queries are in world_
@@ -82,6 +85,9 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
 /// The first option of a query that does not go with its others, or with a cutter, as a query file calls it, and what
 /// was expected; empty if all do.
 std::pair<std::string, std::string> conflictIn(const Workload& workload, const QuerySpec& query);
+
+/// What radar::validate() says of a query, as a query file calls it: "dir: expected ...".
+std::string inKeys(std::string_view wrong);
 
 /// What of a query mode sampled does not offer, as a query file says it; empty if it answers the query.
 std::string exactOnly(const Workload& workload, const QuerySpec& query);

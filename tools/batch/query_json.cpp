@@ -114,8 +114,7 @@ void readTurnTo(const JsonValue& value, const MeshData& mesh, const std::array<d
     query.turn = found.turn;
     query.motion = found.motion;
   } catch (const Error& error) {
-    const std::string_view what = error.what();
-    value.refuse(std::string(what.substr(what.find(": ") + 2)));
+    value.refuse(problemOf(error));
   }
 }
 

@@ -1,5 +1,6 @@
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <iostream>
 #include <iterator>
@@ -17,6 +18,7 @@
 #include "import/float_vertices.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -56,6 +58,17 @@ const std::vector<CutterKind>& cutterKinds() {
   return kinds;
 }
 
+/// Refuses a number or ring of a cutter as its keys call it. The engine counts parts from the cutting end.
+[[noreturn]] void refuseCutter(const JsonValue& value, const std::string& problem) {
+  size_t part = 0, ring = 0;
+  const int places = std::sscanf(problem.c_str(), "parts[%zu][%zu]", &part, &ring);
+  const size_t end = problem.find(": ");
+  const std::string key = problem.substr(0, end), rest = problem.substr(end + 2);
+  if (places < 1) value.member(key.c_str()).refuse(rest);
+  const JsonValue holder = value.member("holder"), own = holder[part - 1];
+  (places == 1 ? own : own[ring]).refuse(rest);
+}
+
 /// {"shape": "flat", "radius": 3, "length": 50, "holder": [[[50, 15], [80, 20]]]}
 FileMesh cutterFrom(const JsonValue& value, const CutterKind& kind) {
   const bool isCone = kind.name == std::string("cone");
@@ -71,10 +84,11 @@ FileMesh cutterFrom(const JsonValue& value, const CutterKind& kind) {
   }
   FileMesh mesh;
   mesh.name = kind.name;
-  value.guard([&] {
+  try {
     mesh.cutter = kind.make(numbers);
-    return 0;
-  });
+  } catch (const Error& error) {
+    refuseCutter(value, problemOf(error));
+  }
   value.ifHas("holder", [&](const JsonValue& holder) {
     for (size_t i = 0; i < holder.size(); ++i) {
       mesh.cutter.parts.emplace_back();
@@ -87,13 +101,14 @@ FileMesh cutterFrom(const JsonValue& value, const CutterKind& kind) {
       }
     }
   });
-  value.guard([&] {
+  try {
     Scene scene;
     const MeshView shown = scene.mesh(scene.addCutter(mesh.cutter));
     mesh.positions.assign(shown.positions.begin(), shown.positions.end());
     mesh.indices.assign(shown.indices.begin(), shown.indices.end());
-    return 0;
-  });
+  } catch (const Error& error) {
+    refuseCutter(value, problemOf(error));
+  }
   return mesh;
 }
 
@@ -215,6 +230,7 @@ JsonQueryFile Reader::read() {
     fingerprint_.add(mesh.positions);
     fingerprint_.add(mesh.indices);
   }
+  result.name = name_;
   result.workload = std::move(workload_);
   result.fingerprint = fingerprint_;
   result.bases = bases_;

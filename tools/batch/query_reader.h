@@ -14,6 +14,7 @@
 namespace radar::tools {
 
 struct JsonQueryFile {
+  std::string name;                          ///< for messages
   Workload workload;                         ///< without the queries of a queries file
   std::vector<std::array<double, 3>> bases;  ///< of the meshes that sensors may be; those of assemblies follow
   std::optional<std::filesystem::path> queriesFile;

@@ -48,7 +48,7 @@ double Answering::setUp(uint32_t scene) {
 void Answering::check(const Batch& batch, std::span<const QuerySpec> queries) const {
   const Mode mode = batch.mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
   for (size_t i = 0; i < batch.queries.size(); ++i) {
-    const std::string wrong = validate(batch.queries[i], player_.scene(), mode);
+    const std::string wrong = inKeys(validate(batch.queries[i], player_.scene(), mode));
     if (!wrong.empty()) throw RefusedQuery(batch.numbers[i], queries[batch.numbers[i]].id, wrong);
   }
 }

@@ -36,7 +36,7 @@ struct RefusedQuery : InputError {
   RefusedQuery(size_t which, const std::string& id, const std::string& why)
       : InputError("query \"" + id + "\"", "", why), index(which), problem(why) {}
   size_t index;         ///< among those that were to be answered
-  std::string problem;  ///< what was expected
+  std::string problem;  ///< what was expected, as of inKeys()
 };
 
 class Answering {

@@ -201,7 +201,8 @@ void check(const Options& options, const QueryFile& queries, const AnsweringOpti
   std::vector<QuerySpec> room;
   constexpr uint64_t kEach = 16'384;
   for (uint64_t first = 0; first < queries.count(); first += kEach) {
-    answering.check(queries.read(first, std::min(kEach, queries.count() - first), room));
+    placed(queries, first,
+           [&] { answering.check(queries.read(first, std::min(kEach, queries.count() - first), room)); });
   }
   std::cout << options.run.file << ": " << countsOf(queries, engine.mode) << "\n";
 }

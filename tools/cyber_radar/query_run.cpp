@@ -122,7 +122,7 @@ Waited answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answe
       read(next);
     });
     const double start = now();
-    current.answers = answering.run(current.queries, progress);
+    current.answers = placed(queries, current.first, [&] { return answering.run(current.queries, progress); });
     const double done = now();
     beside.get();
     waited.writing += now() - done;

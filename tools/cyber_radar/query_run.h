@@ -48,6 +48,16 @@ struct Waited {
   double writing = 0;  ///< for the sink, and for reading further queries
 };
 
+/// Calls `ask` about queries of the file from `first` on. What the engine refuses is refused at its place in the file.
+template <class Ask>
+decltype(auto) placed(const QueryFile& file, uint64_t first, const Ask& ask) {
+  try {
+    return ask();
+  } catch (const RefusedQuery& query) {
+    file.refuse(first + query.index, query.problem);
+  }
+}
+
 /// Answers the queries from `first` to before `end` in chunks of about two seconds, in order. While a chunk is
 /// answered, another thread gives the sink the last one and reads the next. Rethrows what the sink throws.
 Waited answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answering& answering,

@@ -10,7 +10,7 @@ Answered ChunkAnswers::answer(Chunk chunk) {
     Progress none;
     const double start = now();
     const std::span<const QuerySpec> queries = queries_.read(chunk.first, chunk.count, room_);
-    const std::vector<Answer> answers = answering_.run(queries, none);
+    const std::vector<Answer> answers = placed(queries_, chunk.first, [&] { return answering_.run(queries, none); });
     answered.text = rows_.text(chunk.first, queries, answers);
     answered.seconds = now() - start;
     answered.someInvalid = someInvalid(answers);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "batch/answer_rows.h"
-#include "cyber_radar/answering.h"
+#include "cyber_radar/query_run.h"
 #include "mpi/ranks.h"
 
 namespace radar::tools {

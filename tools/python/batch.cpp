@@ -130,11 +130,7 @@ std::string wrongWith(const Query& query, const Scene& scene, AnswerMode mode) {
                                          std::pair{"distance: ", "distances: "}, std::pair{"turn: ", "turns: "}}) {
     if (wrong.rfind(engine, 0) == 0) wrong = argument + wrong.substr(std::strlen(engine));
   }
-  for (const auto& [engine, argument] :
-       {std::pair{"ignoreLeaving", "ignore_leaving"}, std::pair{"skipOverlapping", "skip_overlapping"}}) {
-    if (const size_t at = wrong.find(engine); at != std::string::npos) wrong.replace(at, std::strlen(engine), argument);
-  }
-  return wrong;
+  return tools::inOptions(wrong);
 }
 
 /// Answers the queries; those that break their contracts become invalid, with a reason.

@@ -6,6 +6,7 @@
 
 #include "import/float_vertices.h"
 #include "python/arrays.h"
+#include "workloads/query_fields.h"
 
 namespace radar::python {
 
@@ -63,13 +64,24 @@ Rings ringsOf(const Cutter& cutter) {
   return out;
 }
 
+/// Refuses what makes a cutter in the words of its arguments.
+template <class Make>
+auto cutterBy(const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw Error(tools::problemOf(error));
+  }
+}
+
 Rings cutterRings(const std::string& kind, const std::vector<double>& n) {
-  const Cutter cutter = kind == "flat"        ? flatCutter(n.at(0), n.at(1))
-                        : kind == "ball"      ? ballCutter(n.at(0), n.at(1))
-                        : kind == "bull_nose" ? bullNoseCutter(n.at(0), n.at(1), n.at(2))
-                        : kind == "cone"      ? coneCutter(n.at(0), n.at(1), n.at(2), n.at(3))
-                                              : taperCutter(n.at(0), n.at(1), n.at(2), n.at(3));
-  return ringsOf(cutter);
+  return cutterBy([&] {
+    return ringsOf(kind == "flat"        ? flatCutter(n.at(0), n.at(1))
+                   : kind == "ball"      ? ballCutter(n.at(0), n.at(1))
+                   : kind == "bull_nose" ? bullNoseCutter(n.at(0), n.at(1), n.at(2))
+                   : kind == "cone"      ? coneCutter(n.at(0), n.at(1), n.at(2), n.at(3))
+                                         : taperCutter(n.at(0), n.at(1), n.at(2), n.at(3)));
+  });
 }
 
 MeshId addCutter(CastingScene& scene, const Rings& parts) {
@@ -78,9 +90,11 @@ MeshId addCutter(CastingScene& scene, const Rings& parts) {
     cutter.parts.emplace_back();
     for (const auto& [height, radius, corner] : part) cutter.parts.back().push_back({height, radius, corner});
   }
-  MeshId mesh = kNone;
-  edit(scene, [&](BasedScene& to) { mesh = to.addCutter(cutter); });
-  return mesh;
+  return cutterBy([&] {
+    MeshId mesh = kNone;
+    edit(scene, [&](BasedScene& to) { mesh = to.addCutter(cutter); });
+    return mesh;
+  });
 }
 
 void setVertices(CastingScene& scene, MeshId mesh, const Array<float>& vertices, const Array<double>& base) {

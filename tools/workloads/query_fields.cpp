@@ -180,6 +180,20 @@ bool hasLists(const QuerySpec& query) {
   return std::ranges::any_of(kFields, [&](const QueryField& field) { return field.lists && isGiven(query, field); });
 }
 
+std::string inOptions(std::string_view message) {
+  std::string text;
+  for (const char c : message) {
+    const bool begins = c >= 'A' && c <= 'Z' && !text.empty() && text.back() >= 'a' && text.back() <= 'z';
+    text += begins ? std::string{'_', static_cast<char>(c - 'A' + 'a')} : std::string{c};
+  }
+  return text;
+}
+
+std::string problemOf(const Error& error) {
+  const std::string_view what = error.what();
+  return inOptions(what.substr(what.find(": ") + 2));
+}
+
 std::string queryFieldTable() {
   std::string text = "| option | value | default | in mode `sampled` | |\n|---|---|---|---|---|\n";
   for (const QueryField& field : kFields) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -49,6 +50,11 @@ const QueryField* exactOnly(const QuerySpec& query);
 QuerySpec sampledPartOf(QuerySpec query);
 /// Whether the answer has lists.
 bool hasLists(const QuerySpec& query);
+
+/// A message of the engine's in the words of query files and Python: ignoreLeaving is ignore_leaving.
+std::string inOptions(std::string_view message);
+/// That of an error "call: problem", without the call.
+std::string problemOf(const Error& error);
 
 /// The rows as a table in Markdown.
 std::string queryFieldTable();

@@ -218,6 +218,8 @@ class Scene:
         numbers = mesh_vertices(vertices)
         with self._exclusive() as engine:
             number = self._known_mesh(mesh)
+            if engine.parts(number):
+                raise ValueError(f"mesh: expected one with vertices of its own, got {number}, a cutter")
             old, faces, _ = engine.mesh(number)
             if len(numbers) != len(old):
                 raise ValueError(f"vertices: expected shape ({len(old)}, 3), got shape {numbers.shape}")
@@ -482,9 +484,12 @@ class Scene:
         return self._shapes[key]
 
     def _unrounded(self, meshes: npt.NDArray[np.uint32], name: str) -> npt.NDArray[np.uint32]:
-        """Refuses meshes of Shapes."""
+        """Refuses meshes of Shapes and Cutters."""
         with self._reading() as engine:
             radii = engine.radii()[meshes]
+            for mesh in np.unique(meshes).tolist():
+                if engine.parts(mesh):
+                    raise ValueError(f"{name}: expected meshes, got {mesh}, a cutter")
         if (radii > 0).any():
             raise ValueError(
                 f"{name}: expected meshes without a radius, got {meshes[radii > 0].flat[0]}, of radius {radii.max():g}"

@@ -123,15 +123,27 @@ Nearing nearingOf(Pair<Real> pair, double slack) {
   // of the least length among all, and theirs is at most `most`: the two differ by at most `off`.
   const Real off = Of<Real>::root((start.most - start.least) * (start.most + start.least));
   if (start.least * start.rate + Real{4} * off < Real{}) return Nearing::no;
+  // Bounds on the distance that they would have to come nearer than.
   constexpr Real kMargin{16 * Of<Real>::unit};
-  const Real clearance = pair.clearance;
-  pair.clearance = (std::min(start.least, clearance) - Real{slack}) * (Real{1} - kMargin) - start.error;
-  pair.tolerance = Real{0x1p-6} * pair.clearance;
-  if (pair.clearance > Real{}) {
+  const Real low = (std::min(start.least, pair.clearance) - Real{slack}) * (Real{1} - kMargin) - start.error;
+  const Real high = (std::min(start.most, pair.clearance) - Real{slack}) * (Real{1} + kMargin);
+  // It falls no faster than that of the plane, and no longer than until a is ahead of b by as much as at the start.
+  Real behind{};
+  for (const Point<Real>& a : pair.edges) {
+    for (const Point<Real>& b : pair.gaps) behind = std::max(behind, dot(pair.unit, b - a));
+  }
+  const Real rate = std::max(start.rate + kRateError<Real>, Real{});
+  const Real floor = start.least - Real{1 + 0x1p-20} * rate * (behind + start.most + start.error);
+  if (floor > high) return Nearing::no;
+  // Rounding leaves open the rest.
+  if (floor > low) return Nearing::open;
+  pair.clearance = low;
+  pair.tolerance = Real{0x1p-6} * low;
+  if (low > Real{}) {
     const auto found = search(pair);
     if (found) return found->hi < Real{Of<Real>::never} ? Nearing::yes : Nearing::open;
   }
-  pair.clearance = (std::min(start.most, clearance) - Real{slack}) * (Real{1} + kMargin) + start.error;
+  pair.clearance = high + start.error;
   return search(pair) ? Nearing::open : Nearing::no;
 }
 

@@ -65,16 +65,33 @@ struct PairRule {
   }
   /// With a clearance.
   bool blocks(const exact::PlacedPair& pair, const Translation& motion, double clearance) const {
+    if (touchAtCorners(pair)) return blocks(pair, motion);
     const Nearing nearing =
         motion.stands ? Nearing::open : nearingOf(pair.a, pair.b, motion.direction, clearance, slack);
     if (nearing == Nearing::pressed) return blocks(pair, motion);
     if (nearing != Nearing::open) return nearing == Nearing::yes;
     return exact::blocksWithin(pair.a, pair.b, exact::wayOf(motion), clearance, slack, mirrored);
   }
+  /// Whether a pair does not block, with a clearance or without, because of what it does where it touches. Takes less
+  /// time than telling how far apart it is.
+  bool leaves(const exact::PlacedPair& pair, const Translation& motion) const {
+    return touchAtCorners(pair) && !blocks(pair, motion);
+  }
   /// Pairs with this lead do not block. What is pressed together may have sunk in by the slack.
   Lead leadOf(const Translation& motion) const { return {motion.stands ? Vector{} : motion.unit, 2 * slack}; }
   bool arePressed(const exact::PlacedPair& pair, const Translation& motion) const {
     return exact::arePressed(pair.a, pair.b, exact::wayOf(motion), slack, mirrored);
+  }
+
+ private:
+  /// Whether two corners certainly are no farther apart than the slack: then there is no distance to lose.
+  bool touchAtCorners(const exact::PlacedPair& pair) const {
+    for (const Vector& a : pair.a) {
+      for (const Vector& b : pair.b) {
+        if ((1 + 4 * kUnit) * norm1(minus(a, b)) <= slack) return true;
+      }
+    }
+    return false;
   }
 };
 

@@ -286,6 +286,10 @@ void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, co
   for (size_t i = 0; lists != nullptr && i < lists->hits.size(); ++i) {
     Result& hit = lists->hits[i];
     if (hit.status != Status::overlap) continue;
+    if (hit.object == first.object) {
+      nearest.describe(hit);
+      continue;
+    }
     NearestAtStart own(query);
     nearest_.begin(sensor, own, *stop_);
     add(hit.object, own);

@@ -245,6 +245,25 @@ Nearing nearingOf(const exact::Triangle& a, const exact::Triangle& b, const Vect
   return nearingOf(fine, scale * slack);
 }
 
+bool staysLevel(const exact::Triangle& a, const exact::Triangle& b, const Vector& unit, double slack) {
+  double gap = 0, size = 0, lowA = 0, highB = -std::numeric_limits<double>::infinity();
+  for (size_t k = 0; k < 3; ++k) {
+    const auto [fromA, toA] = std::minmax({a[0][k], a[1][k], a[2][k]});
+    const auto [fromB, toB] = std::minmax({b[0][k], b[1][k], b[2][k]});
+    gap = std::max({gap, fromA - toB, fromB - toA});
+  }
+  if (!(gap > (1 + 2 * kUnit) * slack)) return false;
+  for (size_t i = 0; i < 3; ++i) {
+    const Vector ofA = a[i] - a[0], ofB = b[i] - a[0];
+    lowA = std::min(lowA, radar::dot(unit, ofA));
+    highB = std::max(highB, radar::dot(unit, ofB));
+    size = std::max({size, radar::norm1(ofA), radar::norm1(ofB)});
+  }
+  // Of points that are s apart, a's behind by h, the distance after t is the root of at least s^2 - 2 t h + t^2.
+  const double behind = std::max(highB - lowA, 0.0) + 32 * kUnit * size;
+  return behind * behind < (1 - 0x1p-20) * gap * slack;
+}
+
 bool certainlyWithin(const exact::Triangle& a, const exact::Triangle& b, const Vector& displacement, double clearance) {
   const int exponent = exponentOf(a, b, std::max(clearance, radar::norm1(displacement)));
   const double scale = std::ldexp(1.0, -exponent);

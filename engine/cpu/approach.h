@@ -25,6 +25,10 @@ bool certainlyWithin(const exact::Triangle& a, const exact::Triangle& b, const V
 bool stayApart(const exact::Triangle& a, const exact::Triangle& b, const Vector& normal, const Vector& displacement,
                double clearance);
 
+/// Whether the triangles certainly are farther apart than `slack` at the start, and triangle a, in motion along `unit`,
+/// never comes nearer by more than that, because all of it is ahead of b or level with it. Quick.
+bool staysLevel(const exact::Triangle& a, const exact::Triangle& b, const Vector& unit, double slack);
+
 struct Approach {
   double lo;        ///< world units: the triangles are farther apart before this
   double hi;        ///< they certainly are within the distance by this; infinite if rounding leaves it open

@@ -69,7 +69,7 @@ bool ClearanceContact::hasSunkIn(const exact::PlacedPair& pair) const {
 }
 
 std::optional<Approach> ClearanceContact::bracketOf(const exact::PairName&, const exact::PlacedPair& pair) {
-  if (query_.ignoreLeaving && rule_.leaves(pair, *motion_)) return std::nullopt;
+  if (query_.ignoreLeaving && rule_.leaves(pair, *motion_, query_.clearance)) return std::nullopt;
   const double reach = std::max(query_.clearance, query_.ignoreLeaving ? 2 * rule_.slack : 0);
   const Vector displacement = scaled(motion_->wayUntil(latest_), motion_->unit);
   if (across_ != Vector{} && stayApart(pair.a, pair.b, across_, displacement, reach)) return std::nullopt;
@@ -86,7 +86,7 @@ bool ClearanceContact::counts(const exact::PlacedPair& pair) const {
 
 void NearestAtStart::consider(const exact::PairName& name, const exact::PlacedPair& pair, const Translation& motion,
                               const PairRule& rule) {
-  if (isBefore(name) || (query_.ignoreLeaving && rule.leaves(pair, motion))) return;
+  if (isBefore(name) || (query_.ignoreLeaving && rule.leaves(pair, motion, query_.clearance))) return;
   const Separation found = separationOf(pair.a, pair.b);
   const bool isNearer = found.distance < nearest_.distance || (found.distance == nearest_.distance && name < name_);
   if (!isNearer) return;

@@ -72,9 +72,9 @@ struct PairRule {
     if (nearing != Nearing::open) return nearing == Nearing::yes;
     return exact::blocksWithin(pair.a, pair.b, exact::wayOf(motion), clearance, slack, mirrored);
   }
-  /// Whether a pair does not block, with a clearance or without, because of what it does where it touches. Takes less
-  /// time than telling how far apart it is.
-  bool leaves(const exact::PlacedPair& pair, const Translation& motion) const {
+  /// Whether a pair certainly does not block, with a clearance, as far as less time tells than bounding its distance.
+  bool leaves(const exact::PlacedPair& pair, const Translation& motion, double clearance) const {
+    if (clearance > slack && staysLevel(pair.a, pair.b, motion.unit, slack)) return true;
     return touchAtCorners(pair) && !blocks(pair, motion);
   }
   /// Pairs with this lead do not block. What is pressed together may have sunk in by the slack.

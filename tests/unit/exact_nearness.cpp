@@ -28,7 +28,7 @@ oracle::IntTriangle integers(const Triangle& t) {
 TEST_CASE(
     "a pair blocks at a distance if it comes nearer than the clearance and than it starts, by more than the slack") {
   Random random(63);
-  int blocking = 0, passing = 0, within = 0, constant = 0, leaving = 0, told[4] = {};
+  int blocking = 0, passing = 0, within = 0, constant = 0, leaving = 0, level = 0, told[4] = {};
   for (int i = 0; i < 6000; ++i) {
     INFO("pair " << i);
     const int side = random.integer(1, 4);
@@ -68,21 +68,23 @@ TEST_CASE(
     const radar::cpu::PairRule rule{slack * scale, {}};
     const radar::Query query{.direction = direction, .distance = 100 * scale};
     const radar::Translation motion(query);
-    const bool isKnown = rule.leaves({scaledA, scaledB}, motion);
+    const bool isKnown = rule.leaves({scaledA, scaledB}, motion, clearance * scale);
     REQUIRE(rule.blocks({scaledA, scaledB}, motion, clearance * scale) == truth);
     REQUIRE(!(isKnown && truth));
     leaving += isKnown;
+    level += isKnown && radar::cpu::staysLevel(scaledA, scaledB, motion.unit, slack * scale);
     ++told[static_cast<size_t>(roughly)];
     ++(truth ? blocking : passing);
     within += !touches && start.num <= Integer(clearance * clearance) * start.den;
     constant += !touches && !oracle::isLess(least, start);
   }
-  CAPTURE(blocking, passing, within, constant, leaving, told[0], told[1], told[2], told[3]);
+  CAPTURE(blocking, passing, within, constant, leaving, level, told[0], told[1], told[2], told[3]);
   CHECK(blocking > 500);
   CHECK(passing > 500);
   CHECK(within > 300);
   CHECK(constant > 300);
   CHECK(leaving > 100);
+  CHECK(level > 100);
   // Lattices are hard: triangles touch, and slide along each other.
   for (const int times : told) CHECK(times > 300);
   CHECK(told[3] < 2000);

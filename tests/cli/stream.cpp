@@ -138,6 +138,7 @@ TEST_CASE("a query that only the engine can refuse is named, too") {
   writeScene(folder, line("a", -1) + "," + bad);
   checkRefused(folder, "query q.json", "q.json: queries[1].slack: " + words);
   checkRefused(folder, "query q.json --check", "q.json: queries[1].slack: " + words);
+  checkRefused(folder, "view q.json --out q.html", "q.json: query \"bad\": slack: " + words);
 }
 
 TEST_CASE("a cutter that is not placed rigidly is refused at its place, in JSON, arrays and lines") {

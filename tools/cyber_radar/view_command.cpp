@@ -47,7 +47,11 @@ int view(const Options& options) {
   const Device* device = nullptr;
   if (options.answers.empty()) {
     answering.emplace(workload, modesOf(workload), engine);
-    answers = answersTo(workload, *answering, "answering");
+    try {
+      answers = answersTo(workload, *answering, "answering");
+    } catch (const RefusedQuery& query) {
+      throw InputError(printable(options.file) + ": " + query.what());
+    }
     const std::span<const Device> devices = answering->answerer().devices();
     if (!devices.empty()) device = &devices[0];
   } else {

@@ -85,7 +85,10 @@ def test_what_cutters_cannot_do_is_refused_by_name(scene):
         assert casts.status == Status.INVALID
         assert next(iter(casts.reasons)).startswith(problem)
     for call, problem in (
-        (lambda: fall(scene, mesh, [1, 1, 5], mode="sampled"), 'mesh, in mode "sampled": expected meshes, got 1, a cutter'),
+        (
+            lambda: fall(scene, mesh, [1, 1, 5], mode="sampled"),
+            'mesh, in mode "sampled": expected meshes, got 1, a cutter',
+        ),
         (lambda: scene.add(mesh), "mesh: expected meshes, got 1, a cutter"),
         (lambda: scene.set_vertices(mesh, [[0, 0, 0]]), "mesh: expected one with vertices of its own, got 1, a cutter"),
         (
@@ -97,7 +100,10 @@ def test_what_cutters_cannot_do_is_refused_by_name(scene):
         (lambda: cone(1, 0.1, 30, tip_radius=1), "^tip_radius: expected 0 or more, less than the radius, got 1"),
         (lambda: taper(1, 0.5, 0.95, 9), "^tip_radius: expected less than"),
         (lambda: scene.add_mesh(cyber_radar.Cutter(())), "^parts: expected one or more"),
-        (lambda: fall(scene, tool.with_holder([(5, -1)]), [1, 1, 5]), r"^parts\[1\]\[0\]: radius: expected 0 to 2\^100"),
+        (
+            lambda: fall(scene, tool.with_holder([(5, -1)]), [1, 1, 5]),
+            r"^parts\[1\]\[0\]: radius: expected 0 to 2\^100",
+        ),
         (lambda: scene.add_mesh(tool.with_holder([(5, 0)])), r"^parts\[1\]: expected rings that span a solid"),
         (lambda: tool.with_holder([(1, 2), (1,)]), r"parts\[1\]\[1\]: expected \(height, radius\) or"),
         (lambda: tool.with_holder([(1, "2")]), r"parts\[1\]\[0\]: expected numbers"),

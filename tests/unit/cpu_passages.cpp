@@ -1,5 +1,5 @@
 // How near a sensor comes on its way, and when its last contact ends: the CPU's answers against brute force over all
-// pairs of triangles, distances in long doubles, contacts in exact integers.
+// pairs of triangles. A plane between two triangles proves that they stay apart; contacts are found in exact integers.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -19,21 +19,43 @@ using tools::Vec3;
 namespace {
 
 using Real = long double;
-// Where rounding of the former seems to find a bracket wrong.
+// Where rounding of the former proves too little.
 using Fine = boost::multiprecision::cpp_bin_float_quad;
+
+/// As a share of a pair's size: contacts of nearer ones are looked for exactly.
+constexpr Real kNearlyTouching = 1e-6L;
+/// That far the judge narrows times down.
+const Fine kRoom = 1e-21L;
 
 /// A pair of triangles on a query's way, relative to a corner of the sensor's.
 template <class Number>
 struct Passing {
   distances::Points<Number> a, b;
   distances::Point<Number> unit;
-  Number end, size;
+  Number start, end, size;
+
+  distances::Point<Number> gapAt(const Number& t) const { return distances::gapAt(a, b, unit, t); }
+
+  /// Below every distance from `start` to `end`: how far planes across n keep them apart, less what rounding adds.
+  Number apartAlong(const distances::Point<Number>& n) const {
+    const Number low = std::min({n.dot(b[0]), n.dot(b[1]), n.dot(b[2])});
+    const Number high = std::max({n.dot(a[0]), n.dot(a[1]), n.dot(a[2])}), speed = n.dot(unit);
+    const Number least = low - high - (speed > 0 ? Number(speed * end) : Number(speed * start));
+    const Number length = n.norm();
+    // Squares of less underflow.
+    if (!(length > Number(1e-2000L))) return 0;
+    // Halves of epsilon: 2 of a coordinate and 3 of a product, times lengths below 1.8, on both sides; up to 20 of the
+    // way's length and direction; those of sum and quotient.
+    return least / length - (32 + 16 * end) * std::numeric_limits<Number>::epsilon();
+  }
 };
 
+/// From `start` to `end` in world units.
 template <class Number>
-Passing<Number> passingOf(const oracle::Corners& a, const oracle::Corners& b, const Vec3& direction, Number end) {
+Passing<Number> passingOf(const oracle::Corners& a, const oracle::Corners& b, const Vec3& direction, Number start,
+                          Number end) {
   using std::abs;
-  Passing<Number> out{{}, {}, distances::pointOf<Number>(direction), end, 0};
+  Passing<Number> out{{}, {}, distances::pointOf<Number>(direction), start, end, 0};
   if (direction != Vec3{}) out.unit /= out.unit.stableNorm();
   for (size_t i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -47,29 +69,56 @@ Passing<Number> passingOf(const oracle::Corners& a, const oracle::Corners& b, co
   }
   // Past this, they move apart.
   out.end = std::min(Number(16), Number(end / out.size));
+  out.start = std::min(out.end, Number(start / out.size));
+  return out;
+}
+
+/// On the least distance of a pair on its way.
+template <class Number>
+struct Bounds {
+  Number lo = 0, hi = INFINITY;
+  Number t;  ///< where it is `hi`
+};
+
+/// Halves the way until the distance is proved to stay above `proved` or is at most `seen`, from the time `t` on.
+template <class Number>
+Bounds<Number> boundsOf(const Passing<Number>& pair, const Number& proved, const Number& seen, Number t) {
+  Bounds<Number> out;
+  Number left = pair.start, right = pair.end;
+  std::optional<distances::Point<Number>> falling, rising;
+  for (int i = 0; i < 200; ++i) {
+    const distances::Point<Number> gap = pair.gapAt(t);
+    const Number distance = gap.norm();
+    if (distance < out.hi) {
+      out.hi = distance;
+      out.t = t;
+    }
+    out.lo = std::max(out.lo, pair.apartAlong(gap));
+    const bool isFalling = gap.dot(pair.unit) > 0;
+    (isFalling ? left : right) = t;
+    (isFalling ? falling : rising) = gap;
+    // A plane along the way keeps them as far apart as they ever are.
+    if (falling && rising) {
+      const Number fall = falling->dot(pair.unit), rise = rising->dot(pair.unit);
+      out.lo = std::max(out.lo, pair.apartAlong(fall * *rising - rise * *falling));
+    }
+    if (out.lo > proved || out.hi <= seen) break;
+    t = !falling ? left : !rising ? right : Number((left + right) / 2);
+    if (falling && rising ? !(left < t && t < right) : left == right) break;
+  }
   return out;
 }
 
 template <class Number>
-Number leastOf(const Passing<Number>& pair) {
-  return pair.size * distances::leastDistance(pair.a, pair.b, pair.unit, pair.end, 110);
+Bounds<Number> boundsOf(const Passing<Number>& pair, const Number& proved, const Number& seen) {
+  const Number level = (pair.b[0] + pair.b[1] + pair.b[2] - pair.a[0] - pair.a[1] - pair.a[2]).dot(pair.unit) / 3;
+  return boundsOf(pair, proved, seen, std::min(std::max(level, pair.start), pair.end));
 }
 
-/// Below every distance on the way.
-Real roughly(const Passing<Real>& pair) {
-  const auto middle = [](const distances::Points<Real>& t) { return distances::Point<Real>((t[0] + t[1] + t[2]) / 3); };
-  const auto reach = [&](const distances::Points<Real>& t) {
-    return std::max({(t[0] - middle(t)).norm(), (t[1] - middle(t)).norm(), (t[2] - middle(t)).norm()});
-  };
-  const distances::Point<Real> from = middle(pair.a), to = from + pair.end * pair.unit;
-  return pair.size * (distances::fromSegment<Real>(middle(pair.b), from, to) - reach(pair.a) - reach(pair.b));
-}
-
-/// The last t at which they are within c; -1 if they never are.
-Real lastWithin(const Passing<Real>& pair, Real c) {
-  const auto isWithin = [&](Real t) { return distances::distanceAt(pair.a, pair.b, pair.unit, t) <= c / pair.size; };
-  Real in = distances::nearestTime(pair.a, pair.b, pair.unit, pair.end, 110), out = pair.end;
-  if (!isWithin(in)) return -1;
+/// The last t at which they are within c, where they are at `in`.
+Real lastWithin(const Passing<Real>& pair, Real c, Real in) {
+  const auto isWithin = [&](Real t) { return pair.gapAt(t).norm() <= c / pair.size; };
+  Real out = pair.end;
   if (isWithin(out)) return pair.size * out;
   for (int i = 0; i < 80; ++i) (isWithin((in + out) / 2) ? in : out) = (in + out) / 2;
   return pair.size * in;
@@ -104,6 +153,14 @@ Number wayPast(const Scene& scene, const Query& query, const Vec3& direction) {
   return oracle::isStep(scene, query) ? distances::pointOf<Number>(direction).stableNorm() : Number(query.distance);
 }
 
+/// From the answer's exit on, if it has one: what stays apart from there on is not in contact last, or the answer is
+/// wrong and nothing is from there on.
+Passing<Real> passingFrom(const Scene& scene, const Query& query, const oracle::Corners& a, const oracle::Corners& b,
+                          const Vec3& direction, const Result& exit) {
+  const Real whole = wayPast(scene, query, direction), end = query.motion ? 1 : query.distance;
+  return passingOf<Real>(a, b, direction, exit.status == Status::hit && end > 0 ? exit.lo / end * whole : 0, whole);
+}
+
 void checkExit(const Scene& scene, const Query& query, const std::vector<ObjectId>& skipped, const Result& exit,
                Counts& counts) {
   const bool isStep = oracle::isStep(scene, query);
@@ -111,6 +168,8 @@ void checkExit(const Scene& scene, const Query& query, const std::vector<ObjectI
   std::optional<oracle::Contact> last;
   bool isStuck = false;
   forEachPair(scene, query, skipped, [&](const exact::PairName& name, const auto& a, const auto& b, Vec3 direction) {
+    const Passing<Real> pair = passingFrom(scene, query, a, b, direction, exit);
+    if (boundsOf<Real>(pair, 0, kNearlyTouching).lo > 0) return;
     const bool stands = direction == Vec3{};
     if (stands) direction = {1, 0, 0};
     const auto touching = oracle::contact(a, b, direction);
@@ -157,34 +216,40 @@ void checkClosest(const Scene& scene, const Query& query, const std::vector<Obje
     ++counts.meeting;
     return;
   }
-  Real least = INFINITY, size = 0, atNamed = INFINITY;
+  std::optional<Real> atNamed;
+  Real size = 0;
+  bool isAny = false;
   forEachPair(scene, query, skipped, [&](const exact::PairName& name, const auto& a, const auto& b, const Vec3& d) {
-    const Real whole = wayPast(scene, query, d);
-    const Passing<Real> pair = passingOf(a, b, d, whole);
+    isAny = true;
+    const Passing<Real> pair = passingOf<Real>(a, b, d, 0, wayPast(scene, query, d));
     const bool isNamed = name == exact::PairName{found.at.object, found.at.triB, found.at.triA};
-    if (!isNamed && roughly(pair) > std::min<Real>(least, found.hi)) return;
-    Real own = leastOf(pair);
-    if (own < found.lo || isNamed) own = Real(leastOf(passingOf<Fine>(a, b, d, wayPast<Fine>(scene, query, d))));
-    if (own < least) size = pair.size;
-    least = std::min(least, own);
+    const Real lo = found.lo / pair.size;
+    const bool isProved = boundsOf(pair, lo, lo).lo >= lo;
+    if (isProved && !isNamed) return;
+    const Fine whole = wayPast<Fine>(scene, query, d);
+    const Passing<Fine> fine = passingOf<Fine>(a, b, d, 0, whole);
+    CAPTURE(found.lo, found.hi, double(pair.size), found.at.fraction);
+    if (!isProved) {
+      const Fine least = Fine(found.lo) / fine.size - kRoom;
+      REQUIRE(boundsOf<Fine>(fine, least, least).lo >= least);
+    }
     if (!isNamed) return;
-    const Real way = query.motion ? found.at.t * whole : Real(found.at.t);
-    size = std::max(size, pair.size);
-    atNamed = pair.size * distances::distanceAt(pair.a, pair.b, pair.unit, std::min<Real>(way / pair.size, pair.end));
+    size = pair.size;
+    const Fine way = (query.motion ? Fine(found.at.t * whole) : Fine(found.at.t)) / fine.size;
+    const Fine t = std::max(Fine(0), std::min(way, fine.end)), most = Fine(found.hi) / fine.size + kRoom;
+    atNamed = Real(fine.size * fine.gapAt(t).norm());
+    REQUIRE(boundsOf<Fine>(fine, most, most, t).hi <= most);
   });
-  CAPTURE(found.lo, found.hi, double(least), double(size), found.at.fraction);
-  if (std::isinf(least)) {
+  if (!isAny) {
     REQUIRE(std::isinf(found.lo));
     REQUIRE(found.at.object == kNone);
     return;
   }
-  // That far the judge narrows times down.
-  const Real room = 1e-21L * size;
-  REQUIRE(found.lo <= least + room);
-  REQUIRE(found.hi >= least - room);
-  REQUIRE(found.hi - found.lo <= std::max(1e-13L * size, 1e-8L * least));
-  REQUIRE(std::abs(atNamed - found.at.gap) <= 1e-12L * size);
-  REQUIRE(atNamed <= found.hi + 1e-12L * size);
+  REQUIRE(atNamed);
+  CAPTURE(found.lo, found.hi, double(*atNamed), double(size), found.at.fraction);
+  REQUIRE(found.hi - found.lo <= std::max(1e-13L * size, 1e-8L * found.lo));
+  REQUIRE(std::abs(*atNamed - found.at.gap) <= 1e-12L * size);
+  REQUIRE(*atNamed <= found.hi + 1e-12L * size);
   ++counts.apart;
 }
 
@@ -194,12 +259,15 @@ void checkExitWithin(const Scene& scene, const Query& query, const Result& exit,
   bool isOpen = false;
   forEachPair(scene, query, {}, [&](const exact::PairName&, const auto& a, const auto& b, const Vec3& d) {
     const Real whole = wayPast(scene, query, d), rate = whole > 0 ? end / whole : 0;
-    const Passing<Real> pair = passingOf(a, b, d, whole);
-    if (roughly(pair) > query.clearance) return;
+    Passing<Real> pair = passingFrom(scene, query, a, b, d, exit);
     const Real slack = 1e-12L * (pair.size + Real(query.clearance));
-    if (std::abs(leastOf(pair) - query.clearance) <= slack) isOpen = true;
-    const Real own = lastWithin(pair, query.clearance);
-    if (own < 0) return;
+    const Real outside = (query.clearance + slack) / pair.size, inside = (query.clearance - slack) / pair.size;
+    if (boundsOf(pair, outside, inside).lo > outside) return;
+    pair.start = 0;
+    const Bounds<Real> least = boundsOf(pair, outside, inside);
+    if (least.lo > outside) return;
+    if (least.hi > inside) isOpen = true;
+    const Real own = lastWithin(pair, query.clearance, least.t);
     // Beyond the pair's reach, or at the end.
     const Real t = pair.end * pair.size >= whole && own >= whole ? end : own * rate;
     if (t >= last) room = slack * rate;

@@ -42,11 +42,20 @@ bool joinSamePoints(PairSummary pairs, uint one) {
   return same;
 }
 
+// All of a triangle, sorted: a point is a vertex, and a segment an edge.
+uint wholeOf(RefinedPair c, bool ofA) {
+  dvec3 p[3];
+  cornersOf(c, ofA, p);
+  if (p[0] == p[2]) return RADAR_FEATURE_vertex;
+  return p[0] == p[1] || p[1] == p[2] ? RADAR_FEATURE_edge : RADAR_FEATURE_face;
+}
+
 // Sets the refined pair's overlap, and lists the pair, for the CPU to find the point. Returns whether there was room.
 bool setOverlap(RefinedPair c, inout RadarResult r) {
   r.status = RADAR_STATUS_overlap;
   // The contact certainly begins before the start and ends after it.
-  r.featureA = r.featureB = RADAR_FEATURE_face;
+  r.featureA = wholeOf(c, true);
+  r.featureB = wholeOf(c, false);
   r.t = r.lo = r.hi = r.fraction = r.gap = uvec2(0);
   const uint at = reserveUnresolved(1);
   if (at != kNobody) writeUnresolved(at, c);

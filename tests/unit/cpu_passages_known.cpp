@@ -54,6 +54,37 @@ TEST_CASE("a cube that passes another one at an edge is nearest where the middle
   CHECK(closest.at.object == kNone);
 }
 
+TEST_CASE("what is near only in the middle of the way is nearest, though another object is nearer at its ends") {
+  Scene scene;
+  const MeshId mesh = add(scene, cube(1));
+  scene.addObject({mesh, at(-10, 6, 0)});
+  scene.addObject({mesh, at(30, 6, 0)});
+  const ObjectId amid = scene.addObject({mesh, at(10, 5, 0)});
+  const Query query{
+      .mesh = mesh, .worldFromMesh = at(-10, 0, 0), .direction = {1, 0, 0}, .distance = 40, .closest = true};
+  const Closest closest = *CpuSweeper(scene, 1).run({&query, 1}).lists[0].closest;
+  CHECK(closest.lo <= 3);
+  CHECK(closest.hi >= 3);
+  CHECK(closest.at.object == amid);
+}
+
+TEST_CASE("what would touch just after the end of the way is not the last contact") {
+  Scene scene;
+  const MeshId mesh = add(scene, cube(1));
+  const ObjectId passed = scene.addObject({mesh, at(0, 0, 0)});
+  scene.addObject({mesh, at(20, 0, 0)});
+  const Query query{.mesh = mesh,
+                    .worldFromMesh = at(-10, 0, 0),
+                    .direction = {1, 0, 0},
+                    .distance = std::nextafter(28.0, 0.0),
+                    .exit = true};
+  const Result last = *CpuSweeper(scene, 1).run({&query, 1}).lists[0].exit;
+  CHECK(last.status == Status::hit);
+  CHECK(last.object == passed);
+  CHECK(last.lo <= 12);
+  CHECK(last.hi >= 12);
+}
+
 TEST_CASE("of grids that slide along each other, few pairs of triangles are looked at, however far the way leads") {
   Scene scene;
   const MeshId grid = add(scene, tools::makeGrid(32, tools::Diagonal::rising, [](uint32_t x, uint32_t y) {

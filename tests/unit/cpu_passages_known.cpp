@@ -54,7 +54,7 @@ TEST_CASE("a cube that passes another one at an edge is nearest where the middle
   CHECK(closest.at.object == kNone);
 }
 
-TEST_CASE("what is near only in the middle of the way is nearest, though another object is nearer at its ends") {
+TEST_CASE("what is near only amid the way, or only at its end, is nearest, though other objects are nearer elsewhere") {
   Scene scene;
   const MeshId mesh = add(scene, cube(1));
   scene.addObject({mesh, at(-10, 6, 0)});
@@ -62,10 +62,16 @@ TEST_CASE("what is near only in the middle of the way is nearest, though another
   const ObjectId amid = scene.addObject({mesh, at(10, 5, 0)});
   const Query query{
       .mesh = mesh, .worldFromMesh = at(-10, 0, 0), .direction = {1, 0, 0}, .distance = 40, .closest = true};
-  const Closest closest = *CpuSweeper(scene, 1).run({&query, 1}).lists[0].closest;
+  const auto ask = [&] { return *CpuSweeper(scene, 1).run({&query, 1}).lists[0].closest; };
+  Closest closest = ask();
   CHECK(closest.lo <= 3);
   CHECK(closest.hi >= 3);
   CHECK(closest.at.object == amid);
+  const ObjectId ahead = scene.addObject({mesh, at(33, 0, 0)});
+  closest = ask();
+  CHECK(closest.lo <= 1);
+  CHECK(closest.hi >= 1);
+  CHECK(closest.at.object == ahead);
 }
 
 TEST_CASE("what would touch just after the end of the way is not the last contact") {

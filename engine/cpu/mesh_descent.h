@@ -15,12 +15,14 @@ struct MeshDescent {
                const std::stop_token& stop);
 };
 
-/// Defined for each number of lanes that a processor of this kind may have.
 template <int lanes>
 const MeshDescent& meshDescent();
 template <>
 const MeshDescent& meshDescent<4>();
 template <>
 const MeshDescent& meshDescent<8>();
+
+/// For processors with AVX2; null if it was not compiled.
+const MeshDescent* eightLanes();
 
 }  // namespace radar::cpu

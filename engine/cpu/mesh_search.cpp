@@ -10,7 +10,7 @@ namespace {
 
 const MeshDescent& widestHere() {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return meshDescent<8>();
+  if (__builtin_cpu_supports("avx2") && eightLanes() != nullptr) return *eightLanes();
 #endif
   return meshDescent<4>();
 }

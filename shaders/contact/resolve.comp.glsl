@@ -24,28 +24,26 @@ uvec3 cornersIn(uint feature, bool ofA) {
 bool joinSamePoints(PairSummary pairs, uint one) {
   bool same = true;
   [[dont_unroll]] for (uint side = 0; side < 2; ++side) {
-    const bool ofA = side == 0;
-    const RefinedPair first = refinedPairs[one];
-    const uvec3 which = cornersIn(first.flags & 0xffu, ofA);
     dvec3 p[3];
-    cornersOf(first, ofA, p);
-    const dvec3 p0 = picked(p, which.x), p1 = picked(p, which.y), p2 = picked(p, which.z);
-    for (uint i = heads[s]; i != kNobody && same; i = refinedPairs[i].next) {
+    uint i = one;
+    for (bool first = true; i != kNobody && same; first = false) {
       const RefinedPair c = refinedPairs[i];
-      if (i == one || c.low > pairs.limit) continue;
-      const uvec3 whichOther = cornersIn(c.flags & 0xffu, ofA);
-      dvec3 q[3];
-      cornersOf(c, ofA, q);
-      same = p0 == picked(q, whichOther.x) && p1 == picked(q, whichOther.y) && p2 == picked(q, whichOther.z);
+      if (c.low <= pairs.limit) {
+        const uvec3 which = cornersIn(c.flags & 0xffu, side == 0);
+        dvec3 q[3];
+        cornersOf(c, side == 0, q);
+        q = dvec3[3](picked(q, which.x), picked(q, which.y), picked(q, which.z));
+        if (first) p = q;
+        same = p == q;
+      }
+      i = first ? heads[s] : c.next;
     }
   }
   return same;
 }
 
-// All of a triangle, sorted: a point is a vertex, and a segment an edge.
-uint wholeOf(RefinedPair c, bool ofA) {
-  dvec3 p[3];
-  cornersOf(c, ofA, p);
+// What the corners of a triangle are, sorted: a point is a vertex, and a segment an edge.
+uint wholeOf(dvec3 p[3]) {
   if (p[0] == p[2]) return RADAR_FEATURE_vertex;
   return p[0] == p[1] || p[1] == p[2] ? RADAR_FEATURE_edge : RADAR_FEATURE_face;
 }
@@ -54,8 +52,12 @@ uint wholeOf(RefinedPair c, bool ofA) {
 bool setOverlap(RefinedPair c, inout RadarResult r) {
   r.status = RADAR_STATUS_overlap;
   // The contact certainly begins before the start and ends after it.
-  r.featureA = wholeOf(c, true);
-  r.featureB = wholeOf(c, false);
+  [[dont_unroll]] for (uint side = 0; side < 2; ++side) {
+    dvec3 p[3];
+    cornersOf(c, side == 0, p);
+    r.featureA = r.featureB;
+    r.featureB = wholeOf(p);
+  }
   r.t = r.lo = r.hi = r.fraction = r.gap = uvec2(0);
   const uint at = reserveUnresolved(1);
   if (at != kNobody) writeUnresolved(at, c);

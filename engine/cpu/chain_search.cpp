@@ -182,11 +182,9 @@ void ChainSearch::searchObjects(const Task& task, const ChainPlan& plan, ChainCo
       start.lo[k] -= clearance;
       start.hi[k] += clearance;
     }
-    const auto wants = [&](double near) {
-      return !finder.isDecided() && finder.latest() >= part.from && near <= part.piece.wayUntil(finder.latest());
-    };
-    walk(participants, tree, part.piece, start, wants,
-         [&](ObjectId id) { searchObject(task, earliest.moving(), part, id, finder); });
+    walk(
+        participants, tree, part.piece, start, [&] { return reachOf(finder, part.piece); },
+        [&](ObjectId id) { searchObject(task, earliest.moving(), part, id, finder); });
   }
 }
 

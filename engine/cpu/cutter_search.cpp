@@ -231,10 +231,10 @@ Result CutterSearch::answer(const Query& query, const Scene::Impl& scene, const 
     search(way, id, object, scene.meshes[object.mesh], visitor, pairs, stop);
   };
   Contact contact(query, motion.end, way);
-  const auto wants = [&](double near) { return !contact.isDecided() && near <= motion.wayUntil(contact.latest()); };
+  const auto reach = [&] { return reachOf(contact, motion); };
   const Participants participants(query, scene);
   const Box box = roomyBox(query, scene);
-  walk(participants, tree, motion, box, wants, [&](ObjectId id) {
+  walk(participants, tree, motion, box, reach, [&](ObjectId id) {
     consider(id, contact);
     contact.endObject();
   });
@@ -242,8 +242,7 @@ Result CutterSearch::answer(const Query& query, const Scene::Impl& scene, const 
   if (first.status == Status::overlap) {
     LeastAtStart least(way);
     walk(
-        participants, tree, motion, box, [](double near) { return near <= 0; },
-        [&](ObjectId id) { consider(id, least); });
+        participants, tree, motion, box, [] { return 0.0; }, [&](ObjectId id) { consider(id, least); });
     least.describe(first);
   }
   course.toQuery(first);

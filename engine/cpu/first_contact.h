@@ -35,6 +35,8 @@ class PairVisitor {
   bool isDecided() const { return decided_; }
   /// No contact later than this t of the motion matters.
   double latest() const { return latest_; }
+  /// Whether some pair meets at the start.
+  bool meetsAtStart() const { return atStart_; }
   /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
   bool isBefore(const exact::PairName& least) const { return atStart_ && first_ < least; }
   /// With a clearance: across the gap of a pair found so far, along which others probably are farther apart; 0 if none
@@ -49,11 +51,16 @@ class PairVisitor {
 
   double latest_;
   bool decided_ = false;
-  bool atStart_ = false;   // some pair meets at the start
+  bool atStart_ = false;
   exact::PairName first_;  // the least of these
   Vector across_{};
   Lead lead_;
 };
+
+/// How far the sensor moves on a piece of its way while contacts still matter, world units; negative: none does.
+inline double reachOf(const PairVisitor& visitor, const Piece& piece) {
+  return visitor.isDecided() || visitor.latest() < piece.from ? -1 : piece.wayUntil(visitor.latest());
+}
 
 /// How the pairs of a sensor and an object are judged (exact/blocking.h).
 struct PairRule {

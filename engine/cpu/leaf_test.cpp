@@ -57,6 +57,16 @@ unsigned lanesOf(const LeafPairs& pairs) {
   return lanes;
 }
 
+/// Returns whether they were others. Compares them one by one, since few do not pay for a call of memcmp().
+bool replaceBy(const gpu::MeshNode* const (&leaves)[LeafPairs::kMost], const gpu::MeshNode* (&last)[LeafPairs::kMost]) {
+  bool differ = false;
+  for (int m = 0; m < LeafPairs::kMost; ++m) {
+    differ |= last[m] != leaves[m];
+    last[m] = leaves[m];
+  }
+  return differ;
+}
+
 template <class Real>
 Lanes<Real> beginningOf(const LeafPairs& pairs) {
   Real near[LeafPairs::kMost] = {};
@@ -125,8 +135,7 @@ LeafTest<Real>::LeafTest(const Mesh& meshA, const Mesh& meshB, const RelativePla
 
 template <class Real>
 void LeafTest<Real>::showA(const LeafPairs& pairs) {
-  if (std::equal(std::begin(pairs.a), std::end(pairs.a), a_.leaves)) return;
-  std::copy(std::begin(pairs.a), std::end(pairs.a), a_.leaves);
+  if (!replaceBy(pairs.a, a_.leaves)) return;
   const Corners<Real> own(meshA_.tree, pairs.a, true);
   Real size[LeafPairs::kMost];
   std::fill_n(size, LeafPairs::kMost, 4 * edgeError_);
@@ -150,8 +159,7 @@ void LeafTest<Real>::showA(const LeafPairs& pairs) {
 
 template <class Real>
 void LeafTest<Real>::showB(const LeafPairs& pairs) {
-  if (std::equal(std::begin(pairs.b), std::end(pairs.b), b_.leaves)) return;
-  std::copy(std::begin(pairs.b), std::end(pairs.b), b_.leaves);
+  if (!replaceBy(pairs.b, b_.leaves)) return;
   const Corners<Real> own(meshB_.tree, pairs.b, false);
   Real size[LeafPairs::kMost];
   std::fill_n(size, LeafPairs::kMost, 4 * edgeError_);

@@ -212,7 +212,9 @@ void descend(const MeshTree& treeA, const MeshTree& treeB, const NodeOpener& ope
     const float from = top->near;
     if (from > test.latest()) continue;
     const uint32_t placeA = top->a, placeB = top->b;
-    if (visitor.isBefore({object, treeB.below[placeB].least, treeA.below[placeA].least})) continue;
+    if (visitor.meetsAtStart() && visitor.isBefore({object, treeB.below[placeB].least, treeA.below[placeA].least})) {
+      continue;
+    }
     const gpu::MeshNode &a = treeA.nodes[placeA], &b = treeB.nodes[placeB];
     if (test.keepApart(a, b)) continue;
     // To decide a pair of triangles may take as long as to test very many nodes.

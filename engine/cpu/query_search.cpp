@@ -67,10 +67,8 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   if (turns(query)) return answerTurn(query, scene, tree, skipped, lists);
   const Task task(query, scene);
   const auto find = [&](auto&& finder) {
-    const auto wants = [&](double near) {
-      return !finder.isDecided() && near <= task.motion.wayUntil(finder.latest());
-    };
-    walk(Participants(query, scene), tree, task.motion, roomyBox(query, scene), wants, [&](ObjectId id) {
+    const auto reach = [&] { return reachOf(finder, task.motion); };
+    walk(Participants(query, scene), tree, task.motion, roomyBox(query, scene), reach, [&](ObjectId id) {
       if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
       search(task, id, finder);
       finder.endObject();
@@ -121,8 +119,8 @@ Result QuerySearch::lastContact(const Task& task, const ObjectTree& tree, std::s
     box.hi[k] += shift + 32 * kUnit * (std::abs(box.hi[k]) + std::abs(shift));
   }
   LastContact finder(query, end, toleranceOf(query, task.sensor));
-  const auto wants = [&](double near) { return !finder.isDecided() && near <= back.wayUntil(finder.latest()); };
-  walk(Participants(query, task.scene), tree, back, box, wants, [&](ObjectId id) {
+  const auto reach = [&] { return reachOf(finder, back); };
+  walk(Participants(query, task.scene), tree, back, box, reach, [&](ObjectId id) {
     if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
     const Translation& past = pastOf(task, id);
     finder.beginObject({}, past);
@@ -194,10 +192,8 @@ Result QuerySearch::answerTurn(const Query& query, const Scene::Impl& scene, con
       start.lo[k] -= query.clearance;
       start.hi[k] += query.clearance;
     }
-    const auto wants = [&](double near) {
-      return !finder.isDecided() && finder.latest() >= part.from && near <= part.piece.wayUntil(finder.latest());
-    };
-    walk(Participants(query, scene), tree, part.piece, start, wants, [&](ObjectId id) {
+    const auto reach = [&] { return reachOf(finder, part.piece); };
+    walk(Participants(query, scene), tree, part.piece, start, reach, [&](ObjectId id) {
       if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
       if (query.hits > 1) return reached.emplace_back(id, &part), void();
       searchTurning(task, id, motion, part, finder);
@@ -252,7 +248,7 @@ std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::
   std::vector<ObjectId> found;
   CrossingTest test;
   walk(
-      Participants(still, scene), tree, task.motion, roomyBox(still, scene), [](double near) { return near <= 0; },
+      Participants(still, scene), tree, task.motion, roomyBox(still, scene), [] { return 0.0; },
       [&](ObjectId id) {
         search(task, id, test);
         if (test.endObject()) found.push_back(id);

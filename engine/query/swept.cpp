@@ -47,9 +47,10 @@ Box roomyBox(const Query& query, const Scene::Impl& scene) {
 
 std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, const Box& start) {
   const Translation motion = Course(query, scene).past();
-  const auto wants = [way = motion.wayUntil(motion.end)](double near) { return near <= way; };
   std::vector<ObjectId> found;
-  walk(Participants(query, scene), tree, motion, start, wants, [&](ObjectId id) { found.push_back(id); });
+  walk(
+      Participants(query, scene), tree, motion, start, [&] { return motion.wayUntil(motion.end); },
+      [&](ObjectId id) { found.push_back(id); });
   std::sort(found.begin(), found.end());
   return found;
 }

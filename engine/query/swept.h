@@ -61,15 +61,15 @@ inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, 
 }  // namespace detail
 
 /// Calls `visit` with each participant that the box `start` may meet on a piece of its way, nearest first; with all of
-/// them, in ascending order, if the tree is out of range. `wants`: bool(double near): whether objects still matter that
-/// are met after the box has moved by `near` world units, at the earliest. `visit` must not walk itself.
-template <class Wants, class Visit>
+/// them, in ascending order, if the tree is out of range. `reach`: double(): objects that are met later than after so
+/// many world units do not matter any more; negative: none does. Only `visit` changes it. `visit` must not walk itself.
+template <class Reach, class Visit>
 void walk(const Participants& participants, const ObjectTree& tree, const Piece& piece, const Box& start,
-          const Wants& wants, const Visit& visit) {
+          const Reach& reach, const Visit& visit) {
   const Scene::Impl& scene = participants.scene();
   if (!tree.inRange()) {
     for (ObjectId id = 0; id < scene.objects.size(); ++id) {
-      if (scene.objects[id].used && wants(0.0) && participants.contain(id)) visit(id);
+      if (scene.objects[id].used && reach() >= 0 && participants.contain(id)) visit(id);
     }
     return;
   }
@@ -78,17 +78,20 @@ void walk(const Participants& participants, const ObjectTree& tree, const Piece&
   const SweptBox meets(start, piece, tree);
   detail::OpenNode* const bottom = detail::openNodes(size_t{tree.depth()} + 2);
   detail::OpenNode* top = bottom;
+  double latest = reach();
   const auto push = [&](double near, const gpu::ObjectNode& node) {
     *top = {near, node.link};
-    top += wants(near);
+    top += near <= latest;
   };
   push(meets(nodes[0], nodes[0])[0], nodes[0]);
   while (top != bottom) {
     const detail::OpenNode next = *--top;
-    if (!wants(next.near)) continue;
+    if (next.near > latest) continue;
     if ((next.link & gpu::kLinkLeaf) != 0) {
       const ObjectId id = next.link & gpu::kLinkItem;
-      if (participants.contain(id)) visit(id);
+      if (!participants.contain(id)) continue;
+      visit(id);
+      latest = reach();
       continue;
     }
     const gpu::ObjectNode &left = nodes[next.link], &right = nodes[next.link + 1];

@@ -1,45 +1,71 @@
 #include "scene/box_tree.h"
 
 #include <algorithm>
-#include <future>
+#include <bit>
+#include <cstring>
 #include <limits>
+#include <mutex>
+#include <span>
 
-#include "math/vector.h"
+#include "math/lanes.h"
 #include "scene/parallel.h"
 
 namespace radar {
 
 namespace {
 
-constexpr int kBins = 16;
-// With fewer items, a thread costs more than it saves.
-constexpr size_t kWorthAThread = 1u << 15;
+constexpr uint32_t kBins = 16;
+// Fewer items are not worth a thread, nor parts of their own.
+constexpr size_t kPart = 1u << 15;
+constexpr size_t kChunk = 8192;
+// The fourth numbers of an item hold its index, plus this: bits of a float that is neither subnormal nor NaN.
+constexpr uint32_t kIndex = 1u << 30;
 
-struct Item {
-  FloatBox box;
-  uint32_t id;
-};
+FourFloats loaded(const float (&from)[4]) {
+  FourFloats out;
+  std::memcpy(&out, from, sizeof(out));
+  return out;
+}
 
 struct Growing {
-  std::array<float, 3> lo{kMost, kMost, kMost}, hi{-kMost, -kMost, -kMost};
-  static constexpr float kMost = std::numeric_limits<float>::max();
+  FourFloats lo, hi;
 
-  void add(const std::array<float, 3>& p, const std::array<float, 3>& q) {
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], p[k]);
-      hi[k] = std::max(hi[k], q[k]);
-    }
+  void add(const Growing& other) {
+    lo = other.lo < lo ? other.lo : lo;
+    hi = other.hi > hi ? other.hi : hi;
   }
   // In doubles, since squares of floats may overflow.
   double area() const {
-    const double x = double(hi[0]) - lo[0], y = double(hi[1]) - lo[1], z = double(hi[2]) - lo[2];
-    return x < 0 ? 0 : x * y + y * z + z * x;
+    const HalfOfDoubles x = HalfOfDoubles{hi[0], hi[1]} - HalfOfDoubles{lo[0], lo[1]};
+    const HalfOfDoubles byZ = x * (double(hi[2]) - lo[2]);
+    return x[0] * x[1] + byZ[1] + byZ[0];
   }
 };
+constexpr float kMost = std::numeric_limits<float>::max();
+constexpr Growing kNothing{{kMost, kMost, kMost, kMost}, {-kMost, -kMost, -kMost, -kMost}};
 
-float middle(const FloatBox& box, int axis) {
-  return 0.5f * box.lo[axis] + 0.5f * box.hi[axis];
-}
+struct alignas(32) Item {
+  Item() {}
+  Item(const FloatBox& box, uint32_t index) {
+    std::copy(box.lo.begin(), box.lo.end(), lo);
+    std::copy(box.hi.begin(), box.hi.end(), hi);
+    lo[3] = hi[3] = std::bit_cast<float>(kIndex + index);
+  }
+  uint32_t index() const { return std::bit_cast<uint32_t>(lo[3]) - kIndex; }
+  Growing extent() const { return {loaded(lo), loaded(hi)}; }
+  FourFloats middle() const { return 0.5f * loaded(lo) + 0.5f * loaded(hi); }
+
+  float lo[4], hi[4];
+};
+
+// Around boxes, and around their middles.
+struct Fit {
+  Growing boxes = kNothing, middles = kNothing;
+  void add(const Item& item) {
+    boxes.add(item.extent());
+    middles.add({item.middle(), item.middle()});
+  }
+};
 
 struct Cut {
   int axis = -1;
@@ -57,155 +83,221 @@ class Binning {
     }
   }
   bool spreads(int axis) const { return scale_[axis] > 0; }
-  uint32_t binOf(const FloatBox& box, int axis) const {
-    const double at = (double(middle(box, axis)) - first_[axis]) * scale_[axis];
-    return std::min<uint32_t>(kBins - 1, static_cast<uint32_t>(std::max(at, 0.0)));
+  uint32_t binOf(const FourFloats& middle, int axis) const {
+    return std::min(kBins - 1, static_cast<uint32_t>((double(middle[axis]) - first_[axis]) * scale_[axis]));
   }
 
  private:
-  Vector first_{}, scale_{};
+  double first_[3], scale_[3];
 };
 
-// The cut with the least sum of (area times number of items) over both sides.
-Cut bestCut(std::span<const Item> items, const Binning& binning) {
-  Cut best;
-  double bestCost = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    if (!binning.spreads(k)) continue;
-    Growing bins[kBins];
-    uint32_t counts[kBins] = {};
-    for (const Item& item : items) {
-      const uint32_t bin = binning.binOf(item.box, k);
-      bins[bin].add(item.box.lo, item.box.hi);
-      ++counts[bin];
+// The items of each bin along an axis.
+class Bins {
+ public:
+  void add(uint32_t bin, const Item& item) {
+    if ((used_ >> bin & 1) == 0) {
+      bins_[bin] = item.extent();
+      counts_[bin] = 1;
+      used_ |= 1u << bin;
+    } else {
+      bins_[bin].add(item.extent());
+      ++counts_[bin];
     }
+  }
+
+  // The cut with the least sum of (area times number of items) over both sides, if that is below `least`.
+  void improve(Cut& cut, double& least, int axis) const {
     double right[kBins];
-    Growing around;
+    Growing around = kNothing;
     uint32_t count = 0;
-    for (uint32_t bin = kBins - 1; bin > 0; --bin) {
-      around.add(bins[bin].lo, bins[bin].hi);
-      count += counts[bin];
+    for (uint32_t rest = used_; rest != 0;) {
+      const auto bin = static_cast<uint32_t>(std::bit_width(rest) - 1);
+      add(around, count, bin);
       right[bin] = around.area() * count;
+      rest ^= 1u << bin;
     }
-    around = {};
+    around = kNothing;
     count = 0;
-    for (uint32_t bin = 1; bin < kBins; ++bin) {
-      around.add(bins[bin - 1].lo, bins[bin - 1].hi);
-      count += counts[bin - 1];
-      const double cost = around.area() * count + right[bin];
-      if (cost < bestCost && count != 0 && count != items.size()) {
-        bestCost = cost;
-        best = {k, bin};
+    for (uint32_t rest = used_; (rest & (rest - 1)) != 0;) {
+      add(around, count, static_cast<uint32_t>(std::countr_zero(rest)));
+      rest &= rest - 1;
+      const auto next = static_cast<uint32_t>(std::countr_zero(rest));
+      const double cost = around.area() * count + right[next];
+      if (cost < least) {
+        least = cost;
+        cut = {axis, next};
       }
     }
   }
-  return best;
-}
 
-// Moves the items of the left side to the front; returns their number.
-size_t split(std::span<Item> items, const Growing& middles) {
-  const Binning binning(middles);
-  const Cut cut = bestCut(items, binning);
-  size_t left = 0;
-  if (cut.axis >= 0) {
-    const auto at = std::partition(items.begin(), items.end(),
-                                   [&](const Item& item) { return binning.binOf(item.box, cut.axis) < cut.bin; });
-    left = static_cast<size_t>(at - items.begin());
+ private:
+  void add(Growing& around, uint32_t& count, uint32_t bin) const {
+    around.add(bins_[bin]);
+    count += counts_[bin];
   }
-  // If all middles coincide, any halves will do.
-  return left == 0 || left == items.size() ? items.size() / 2 : left;
-}
 
-struct Subtree {
-  std::vector<BoxTree::Node> nodes;
-  uint32_t depth = 0;
+  Growing bins_[kBins];
+  uint32_t counts_[kBins];
+  uint32_t used_ = 0;  // one bit each
 };
+
+Cut bestCut(std::span<const Item> items, const Binning& binning) {
+  Bins bins[3];
+  for (const Item& item : items) {
+    const FourFloats middle = item.middle();
+    for (int k = 0; k < 3; ++k) bins[k].add(binning.binOf(middle, k), item);
+  }
+  Cut cut;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    if (binning.spreads(k)) bins[k].improve(cut, least, k);
+  }
+  return cut;
+}
 
 class Builder {
  public:
-  Builder(std::span<Item> items, uint32_t leafSize) : items_(items), leafSize_(leafSize) {}
+  Builder(std::vector<FloatBox> boxes, uint32_t leafSize, bool alone)
+      : items_(boxes.size()), leafSize_(leafSize), threads_(alone ? 1 : 0), part_(alone ? boxes.size() + 1 : kPart) {
+    parallelFor(boxes.size(), kChunk, threads_, [&](unsigned, size_t first, size_t last) {
+      for (size_t i = first; i < last; ++i) items_[i] = {boxes[i], static_cast<uint32_t>(i)};
+    });
+    boxes = std::vector<FloatBox>();  // not at the end of what calls this
+  }
 
-  Subtree build(size_t first, size_t count, unsigned threads) {
-    if (threads < 2 || count < kWorthAThread) return buildAlone(first, count);
-    Growing middles;
-    BoxTree::Node root = fit(first, count, middles);
-    const size_t left = split(items_.subspan(first, count), middles);
-    auto other = std::async(std::launch::async, [&] { return build(first + left, count - left, threads / 2); });
-    const Subtree near = build(first, left, threads - threads / 2), far = other.get();
-    root.child = 1;
-    Subtree whole{{root, near.nodes[0], far.nodes[0]}, 1 + std::max(near.depth, far.depth)};
-    append(whole, near, 1);
-    append(whole, far, 2);
-    return whole;
+  BoxTree build() {
+    Range whole{0, items_.size(), {}};
+    for (const Item& item : items_) whole.fit.add(item);
+    tree_.nodes.resize(2 * items_.size() - 1);
+    build(whole, 0, 1, 1);
+    std::ranges::sort(parts_, {}, &Part::first);
+    const Part* part = parts_.data();
+    size_t end = 1;
+    settle(0, end, part);
+    tree_.nodes.resize(end);
+    tree_.order.resize(items_.size());
+    parallelFor(items_.size(), kChunk, threads_, [&](unsigned, size_t first, size_t last) {
+      for (size_t i = first; i < last; ++i) tree_.order[i] = items_[i].index();
+    });
+    return std::move(tree_);
   }
 
  private:
-  BoxTree::Node fit(size_t first, size_t count, Growing& middles) const {
-    Growing box;
-    for (const Item& item : items_.subspan(first, count)) {
-      box.add(item.box.lo, item.box.hi);
-      const std::array<float, 3> at{middle(item.box, 0), middle(item.box, 1), middle(item.box, 2)};
-      middles.add(at, at);
-    }
-    return {{box.lo, box.hi}, static_cast<uint32_t>(first), static_cast<uint32_t>(count), 0};
+  struct Range {
+    size_t first, count;
+    Fit fit;
+  };
+  // The nodes below one that a single thread has built.
+  struct Part {
+    size_t first, last;
+  };
+
+  BoxTree::Node nodeOf(const Range& range, size_t child) const {
+    const auto& [lo, hi] = range.fit.boxes;
+    return {{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}},
+            static_cast<uint32_t>(range.first),
+            static_cast<uint32_t>(range.count),
+            static_cast<uint32_t>(child)};
   }
 
-  Subtree buildAlone(size_t first, size_t count) {
+  // Builds a node, and those below it in as many places as leaves of one item would take.
+  void build(const Range& range, size_t node, size_t below, uint32_t depth) {
+    if (range.count < part_) {
+      buildPart(range, node, below, depth);
+      return;
+    }
+    tree_.nodes[node] = nodeOf(range, below);
+    const std::array<Range, 2> sides = split(range);
+    parallelFor(2, 1, 2, [&](unsigned, size_t side, size_t) {
+      build(sides[side], below + side, side == 0 ? below + 2 : below + 2 * sides[0].count, depth + 1);
+    });
+  }
+
+  void buildPart(const Range& range, size_t node, size_t below, uint32_t depth) {
     struct Open {
-      size_t node, first, count;
+      size_t node;
       uint32_t depth;
+      Range range;
     };
-    Subtree tree;
-    tree.nodes.reserve(2 * count / leafSize_ + 1);
-    tree.nodes.emplace_back();
-    std::vector<Open> open{{0, first, count, 1}};
+    Part part{below, below};
+    uint32_t deepest = 0;
+    std::vector<Open> open{{node, depth, range}};
     while (!open.empty()) {
       const Open next = open.back();
       open.pop_back();
-      tree.depth = std::max(tree.depth, next.depth);
-      Growing middles;
-      BoxTree::Node node = fit(next.first, next.count, middles);
-      if (next.count > leafSize_) {
-        const size_t left = split(items_.subspan(next.first, next.count), middles);
-        const size_t child = tree.nodes.size();
-        node.child = static_cast<uint32_t>(child);
-        tree.nodes.resize(child + 2);
-        open.push_back({child + 1, next.first + left, next.count - left, next.depth + 1});
-        open.push_back({child, next.first, left, next.depth + 1});
-      }
-      tree.nodes[next.node] = node;
+      deepest = std::max(deepest, next.depth);
+      const bool isLeaf = next.range.count <= leafSize_;
+      tree_.nodes[next.node] = nodeOf(next.range, isLeaf ? 0 : part.last);
+      if (isLeaf) continue;
+      const std::array<Range, 2> sides = split(next.range);
+      for (const size_t side : {1, 0}) open.push_back({part.last + side, next.depth + 1, sides[side]});
+      part.last += 2;
     }
-    return tree;
+    const std::scoped_lock lock(mutex_);
+    tree_.depth = std::max(tree_.depth, deepest);
+    parts_.push_back(part);
   }
 
-  // Appends a subtree, whose root goes to index `at`.
-  static void append(Subtree& whole, const Subtree& part, size_t at) {
-    const auto offset = static_cast<uint32_t>(whole.nodes.size() - 1);
-    const auto moved = [&](BoxTree::Node node) {
-      if (node.child != 0) node.child += offset;
-      return node;
-    };
-    whole.nodes[at] = moved(part.nodes[0]);
-    for (size_t i = 1; i < part.nodes.size(); ++i) whole.nodes.push_back(moved(part.nodes[i]));
+  // Moves the nodes below one to `end`.
+  void settle(size_t at, size_t& end, const Part*& part) {
+    BoxTree::Node* const nodes = tree_.nodes.data();
+    if (nodes[at].count >= part_) {
+      const size_t child = end;
+      std::copy_n(nodes + nodes[at].child, 2, nodes + child);
+      nodes[at].child = static_cast<uint32_t>(child);
+      end += 2;
+      settle(child, end, part);
+      settle(child + 1, end, part);
+      return;
+    }
+    const auto [first, last] = *part++;
+    const auto gap = static_cast<uint32_t>(first - end);
+    if (gap != 0) {
+      std::copy(nodes + first, nodes + last, nodes + end);
+      const auto close = [&](BoxTree::Node& node) { node.child -= node.child != 0 ? gap : 0; };
+      close(nodes[at]);
+      std::for_each(nodes + end, nodes + end + (last - first), close);
+    }
+    end += last - first;
   }
 
-  std::span<Item> items_;
-  uint32_t leafSize_;
+  // Sorts the items of a node into those of its children.
+  std::array<Range, 2> split(const Range& range) {
+    const std::span<Item> items(items_.data() + range.first, range.count);
+    const Binning binning(range.fit.middles);
+    const Cut cut = bestCut(items, binning);
+    Fit left, right;
+    size_t first = 0, last = items.size();
+    if (cut.axis < 0) {  // all middles coincide: any halves will do
+      while (first < items.size() / 2) left.add(items[first++]);
+      for (size_t i = first; i < last; ++i) right.add(items[i]);
+    } else {
+      const auto isLeft = [&](size_t i) { return binning.binOf(items[i].middle(), cut.axis) < cut.bin; };
+      for (;;) {
+        while (first < last && isLeft(first)) left.add(items[first++]);
+        while (first < last && !isLeft(last - 1)) right.add(items[--last]);
+        if (first == last) break;
+        std::swap(items[first], items[last - 1]);
+        left.add(items[first++]);
+        right.add(items[--last]);
+      }
+    }
+    return {Range{range.first, first, left}, Range{range.first + first, range.count - first, right}};
+  }
+
+  UnwrittenVector<Item> items_;
+  const uint32_t leafSize_;
+  const unsigned threads_;
+  const size_t part_;  // nodes of fewer items are built with all below them
+  BoxTree tree_;
+  std::mutex mutex_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace
 
-BoxTree buildBoxTree(std::span<const FloatBox> boxes, uint32_t leafSize, unsigned threads) {
-  BoxTree tree;
-  if (boxes.empty()) return tree;
-  std::vector<Item> items(boxes.size());
-  for (uint32_t i = 0; i < items.size(); ++i) items[i] = {boxes[i], i};
-  Subtree whole = Builder(items, leafSize).build(0, items.size(), threadCount(threads));
-  tree.nodes = std::move(whole.nodes);
-  tree.depth = whole.depth;
-  tree.order.resize(items.size());
-  for (size_t i = 0; i < items.size(); ++i) tree.order[i] = items[i].id;
-  return tree;
+BoxTree buildBoxTree(std::vector<FloatBox> boxes, uint32_t leafSize, bool alone) {
+  return boxes.empty() ? BoxTree{} : Builder(std::move(boxes), leafSize, alone).build();
 }
 
 }  // namespace radar

@@ -6,10 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "math/rounding.h"
+#include "scene/node_vector.h"
 
 namespace radar {
 
@@ -41,17 +41,18 @@ struct BoxTree {
   /// A leaf holds the items order[first] to order[first + count - 1]; for an inner node, the leaves below hold them.
   struct Node {
     FloatBox box;
-    uint32_t first = 0, count = 0;
-    uint32_t child = 0;  ///< left child; the right one follows it; 0: a leaf
+    uint32_t first, count;
+    uint32_t child;  ///< left child; the right one follows it; 0: a leaf
   };
   /// The root first, children after their parents; empty without items. The nodes below one are consecutive, its
   /// children first.
-  std::vector<Node> nodes;
+  UnwrittenVector<Node> nodes;
   std::vector<uint32_t> order;  ///< indices of the boxes, leaf by leaf
   uint32_t depth = 0;           ///< nodes on the longest path from the root to a leaf
 };
 
-/// Leaves hold at most `leafSize` boxes. Boxes are finite. `threads`: 0: one per core; the tree does not depend on it.
-BoxTree buildBoxTree(std::span<const FloatBox> boxes, uint32_t leafSize, unsigned threads = 0);
+/// Leaves hold at most `leafSize` of at most 2^29 boxes, which are finite. `alone`: on the caller's thread, where the
+/// tree is the same.
+BoxTree buildBoxTree(std::vector<FloatBox> boxes, uint32_t leafSize, bool alone = false);
 
 }  // namespace radar

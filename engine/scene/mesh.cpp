@@ -1,9 +1,11 @@
 #include "scene/mesh.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "math/number_text.h"
 #include "math/rounding.h"
+#include "scene/parallel.h"
 
 namespace radar {
 
@@ -13,11 +15,12 @@ constexpr double kMostBound = 0x1p120;
 // Least exponent of a mesh's unit: a float must hold its inverse.
 constexpr int kLeastUnit = -126;
 constexpr size_t kMostVertices = size_t{1} << 30;
+constexpr size_t kChunk = 8192;
 
-double edgeLength(const Mesh& mesh, uint32_t a, uint32_t b) {
+double edgeLength(const float* a, const float* b) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
-    const double difference = double(mesh.positions[3 * size_t{a} + k]) - mesh.positions[3 * size_t{b} + k];
+    const double difference = double(a[k]) - b[k];
     sum += difference * difference;
   }
   return std::sqrt(sum);
@@ -29,30 +32,54 @@ double originOf(double lo, double hi) {
   return std::abs(middle) >= 2.5 * half ? static_cast<float>(middle) : 0;
 }
 
-// Computes the derived members but the tree. `box`: the bounds within which a host may deform the mesh, or empty.
-void derive(Mesh& mesh, Box box) {
-  // Vertices that no triangle uses must not widen the window.
-  for (uint32_t vertex : mesh.indices) {
-    const float* p = &mesh.positions[3 * size_t{vertex}];
-    box.add({p[0], p[1], p[2]});
+// Computes the derived members of a mesh but the tree. Once constructed, it does not throw.
+class Derivation {
+ public:
+  explicit Derivation(Mesh& mesh)
+      : mesh_(mesh), perimeters_(mesh.triangleCount()), boxes_((perimeters_.size() + kChunk - 1) / kChunk) {
+    for (std::vector<float>& along : mesh.local) along.resize(mesh.vertexCount());
   }
-  setBox(mesh, box);
-  for (int k = 0; k < 3; ++k) {
-    const double used = mesh.positions[3 * size_t{mesh.indices[0]} + k];
-    mesh.local[k].assign(mesh.vertexCount(), static_cast<float>(used - mesh.origin[k]));
+
+  // `box`: the bounds within which a host may deform the mesh, or empty.
+  void derive(Box box) {
+    parallelFor(perimeters_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      Box& around = boxes_[first / kChunk];
+      around = {};
+      for (size_t t = first; t < last; ++t) {
+        const float* p[3];
+        for (int i = 0; i < 3; ++i) {
+          // Vertices that no triangle uses must not widen the window.
+          p[i] = &mesh_.positions[3 * size_t{mesh_.indices[3 * t + i]}];
+          around.add({p[i][0], p[i][1], p[i][2]});
+        }
+        perimeters_[t] = edgeLength(p[0], p[1]) + edgeLength(p[1], p[2]) + edgeLength(p[2], p[0]);
+      }
+    });
+    for (const Box& around : boxes_) box.merge(around);
+    setBox(mesh_, box);
+    double sum = 0;
+    for (const double perimeter : perimeters_) sum += perimeter;
+    mesh_.meanEdge = sum / static_cast<double>(mesh_.indices.size());
+    for (int k = 0; k < 3; ++k) std::ranges::fill(mesh_.local[k], localOf(mesh_.indices[0], k));
+    parallelFor(mesh_.indices.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      for (size_t i = first; i < last; ++i) {
+        const uint32_t vertex = mesh_.indices[i];
+        for (int k = 0; k < 3; ++k) {  // several threads may write the same
+          std::atomic_ref(mesh_.local[k][vertex]).store(localOf(vertex, k), std::memory_order_relaxed);
+        }
+      }
+    });
   }
-  for (uint32_t vertex : mesh.indices) {
-    for (int k = 0; k < 3; ++k) {
-      mesh.local[k][vertex] = static_cast<float>(mesh.positions[3 * size_t{vertex} + k] - mesh.origin[k]);
-    }
+
+ private:
+  float localOf(uint32_t vertex, int axis) const {
+    return static_cast<float>(mesh_.positions[3 * size_t{vertex} + axis] - mesh_.origin[axis]);
   }
-  double sum = 0;
-  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
-    sum += edgeLength(mesh, a, b) + edgeLength(mesh, b, c) + edgeLength(mesh, c, a);
-  }
-  mesh.meanEdge = sum / static_cast<double>(mesh.indices.size());
-}
+
+  Mesh& mesh_;
+  std::vector<double> perimeters_;  // of triangles
+  std::vector<Box> boxes_;          // of chunks of triangles
+};
 
 void requireFinite(const std::string& where, std::span<const float> positions) {
   for (size_t i = 0; i < positions.size(); ++i) {
@@ -152,7 +179,7 @@ Mesh makeMesh(std::span<const float> positions, std::span<const uint32_t> indice
     box.lo[k] = roundDown(box.lo[k]);
     box.hi[k] = roundUp(box.hi[k]);
   }
-  derive(mesh, box);
+  Derivation(mesh).derive(box);
   mesh.tree = buildMeshTree(mesh);
   return mesh;
 }
@@ -165,18 +192,11 @@ void movePositions(Mesh& mesh, std::span<const float> positions) {
   requireFinite("setPositions", positions);
   if (mesh.hasBounds) requireInside(mesh, positions);
   const Box bounds = mesh.hasBounds ? boundsOf(mesh) : Box{};
-  const std::vector<float> before = mesh.positions;
-  const auto move = [&](std::span<const float> to) {  // in place: a MeshView shows them
-    std::copy(to.begin(), to.end(), mesh.positions.begin());
-    derive(mesh, bounds);
-  };
-  move(positions);
-  try {
-    refitMeshTree(mesh, mesh.tree);
-  } catch (...) {
-    move(before);
-    throw;
-  }
+  Derivation derivation(mesh);
+  refitMeshTree(mesh, mesh.tree, [&] {
+    std::copy(positions.begin(), positions.end(), mesh.positions.begin());  // in place: a MeshView shows them
+    derivation.derive(bounds);
+  });
 }
 
 }  // namespace radar

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <new>
 #include <utility>
 
+#include "math/lanes.h"
 #include "scene/box_tree.h"
 #include "scene/parallel.h"
 #include "scene/scene.h"
@@ -22,126 +25,80 @@ constexpr size_t kChunk = 4096;
 // A tree is built anew once refitting has made its cost this many times that after it was built.
 constexpr double kRebuildAt = 2.0;
 
-using Point = std::array<float, 3>;
+FloatBox boxAround(const float* points, uint32_t count) {
+  FloatBox box{{points[0], points[1], points[2]}, {points[0], points[1], points[2]}};
+  for (const float* p = points + 3; p != points + 3 * size_t{count}; p += 3) {
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], p[k]);
+      box.hi[k] = std::max(box.hi[k], p[k]);
+    }
+  }
+  return box;
+}
 
 double halfArea(const FloatBox& box) {
   const double x = double(box.hi[0]) - box.lo[0], y = double(box.hi[1]) - box.lo[1], z = double(box.hi[2]) - box.lo[2];
   return x * y + y * z + z * x;
 }
 
-// The nodes that a random line through the root meets, by the areas of their boxes.
-double cost(const std::vector<BoxTree::Node>& nodes) {
-  double sum = 0;
-  for (const BoxTree::Node& node : nodes) sum += halfArea(node.box);
-  return sum / std::max(halfArea(nodes[0].box), std::numeric_limits<double>::min());
-}
+// A node of at most kSlabTriangles, and those below it: first to last - 1. Or a larger node alone, which holds such.
+struct Part {
+  uint32_t node, first, last;
+  uint32_t above;  ///< the part of the node above
+};
 
-class Builder {
+// Fits parts of a tree, one after another. Nothing but its construction throws.
+class PartFitter {
  public:
-  explicit Builder(const Mesh& mesh) : mesh_(mesh) {}
-
-  MeshTree build() const {
-    BoxTree tree = buildBoxTree(boxesOfTriangles(), kLeafTriangles);
-    MeshTree out;
-    out.order = std::move(tree.order);
-    out.depth = tree.depth;
-    out.builtCost = cost(tree.nodes);
-    out.nodes.resize(tree.nodes.size());
-    out.below.resize(tree.nodes.size());
-    out.corners.resize(9 * out.order.size() + MeshTree::kPadding);
-    fillAll(out, tree.nodes);
-    for (size_t i = out.nodes.size(); i-- > 0;) {  // children come after their parents
-      const BoxTree::Node& node = tree.nodes[i];
-      if (node.child == 0) continue;
-      out.below[i].least = std::min(out.below[node.child].least, out.below[node.child + 1].least);
-    }
-    return out;
+  explicit PartFitter(size_t mostTriangles) : boxes_(2 * mostTriangles), normals_(mostTriangles) {
+    for (std::vector<double>& along : corners_) along.resize(3 * mostTriangles);
   }
 
-  void refit(MeshTree& tree) const {
-    const std::vector<FloatBox> boxes = boxesOfTriangles();
-    std::vector<BoxTree::Node> nodes(tree.nodes.size());
-    for (size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
-      const uint32_t link = tree.nodes[i].link;
-      BoxTree::Node& node = nodes[i];
-      node = {{}, tree.below[i].first, tree.below[i].count, (link & gpu::kLinkLeaf) != 0 ? 0 : link};
-      if (node.child != 0) {
-        node.box = around(nodes[node.child].box, nodes[node.child + 1].box);
+  // Returns the box; adds the areas of all nodes.
+  FloatBox fit(MeshTree& tree, const Part& part, double& areas) {
+    const MeshTree::Below& all = tree.below[part.node];
+    load(&tree.corners[9 * size_t{all.first}], all.count);
+    const auto fitNode = [&](uint32_t i, FloatBox& box) {
+      gpu::MeshNode& node = tree.nodes[i];
+      MeshTree::Below& below = tree.below[i];
+      if (isLeaf(node)) {
+        box = boxAround(&tree.corners[9 * size_t{below.first}], 3 * below.count);
+        below.least = std::min(tree.order[below.first], tree.order[below.first + below.count - 1]);
       } else {
-        node.box = boxes[tree.order[node.first]];
-        for (uint32_t k = 1; k < node.count; ++k) node.box = around(node.box, boxes[tree.order[node.first + k]]);
+        const FloatBox* const children = &boxes_[node.link - part.first];
+        box = around(children[0], children[1]);
+        below.least = std::min(tree.below[node.link].least, tree.below[node.link + 1].least);
       }
-    }
-    if (cost(nodes) <= kRebuildAt * tree.builtCost) {
-      fillAll(tree, nodes);
-    } else {
-      tree = build();
-    }
+      areas += halfArea(box);
+      fitBox(box, node.centre, node.halfExtent);
+      fitSlab(node, below.first - all.first, below.count);
+    };
+    for (uint32_t i = part.last; i-- > part.first;) fitNode(i, boxes_[i - part.first]);
+    fitNode(part.node, boxes_.back());
+    return boxes_.back();
   }
 
  private:
-  std::vector<FloatBox> boxesOfTriangles() const {
-    std::vector<FloatBox> boxes(mesh_.triangleCount());
-    parallelFor(boxes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-      for (size_t t = first; t < last; ++t) boxes[t] = boxOf(static_cast<uint32_t>(t));
-    });
-    return boxes;
-  }
-
-  // Writes the nodes and their ranges, but not the least triangle below inner nodes.
-  void fillAll(MeshTree& tree, const std::vector<BoxTree::Node>& from) const {
-    parallelFor(from.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-      for (size_t i = first; i < last; ++i) fill(tree, from[i], i);
-    });
-  }
-
-  Point corner(uint32_t triangle, int i) const {
-    const uint32_t vertex = mesh_.indices[3 * size_t{triangle} + i];
-    return {mesh_.normalised(vertex, 0), mesh_.normalised(vertex, 1), mesh_.normalised(vertex, 2)};
-  }
-
-  FloatBox boxOf(uint32_t triangle) const {
-    FloatBox box{corner(triangle, 0), corner(triangle, 0)};
-    for (int i = 1; i < 3; ++i) {
-      const Point p = corner(triangle, i);
+  void load(const float* from, uint32_t triangles) {
+    for (uint32_t i = 0; i < 3 * triangles; ++i) {
+      for (int k = 0; k < 3; ++k) corners_[k][i] = from[3 * i + k];
+    }
+    for (uint32_t t = 0; t < triangles; ++t) {
+      const uint32_t a = 3 * t, b = a + 1, c = a + 2;
       for (int k = 0; k < 3; ++k) {
-        box.lo[k] = std::min(box.lo[k], p[k]);
-        box.hi[k] = std::max(box.hi[k], p[k]);
+        const std::vector<double>&along = corners_[(k + 1) % 3], &across = corners_[(k + 2) % 3];
+        normals_[t][k] =
+            (along[b] - along[a]) * (across[c] - across[a]) - (across[b] - across[a]) * (along[c] - along[a]);
       }
     }
-    return box;
-  }
-
-  void fill(MeshTree& tree, const BoxTree::Node& from, size_t i) const {
-    gpu::MeshNode& node = tree.nodes[i];
-    fitBox(from.box, node.centre, node.halfExtent);
-    node.normal[0] = node.normal[1] = node.normal[2] = node.slabMiddle = node.slabHalf = 0;
-    if (from.child == 0) {
-      node.link = gpu::kLinkLeaf | (from.count > 1 ? gpu::kLinkPair : 0) | from.first;
-      const auto first = tree.order.begin() + from.first;
-      tree.below[i] = {from.first, from.count, *std::min_element(first, first + from.count)};
-      float* out = &tree.corners[9 * size_t{from.first}];
-      for (uint32_t k = 0; k < from.count; ++k) {
-        for (int c = 0; c < 3; ++c) out = std::ranges::copy(corner(first[k], c), out).out;
-      }
-    } else {
-      node.link = from.child;
-      tree.below[i].first = from.first;
-      tree.below[i].count = from.count;
-    }
-    if (from.count <= kSlabTriangles) fitSlab(tree, from, node);
   }
 
   // The slab along the triangles' mean normal. Any normal would be valid; this one gives a thin slab.
-  void fitSlab(const MeshTree& tree, const BoxTree::Node& from, gpu::MeshNode& node) const {
+  void fitSlab(gpu::MeshNode& node, uint32_t first, uint32_t count) const {
+    node.normal[0] = node.normal[1] = node.normal[2] = node.slabMiddle = node.slabHalf = 0;
     Vector sum{};
-    for (uint32_t place = from.first; place < from.first + from.count; ++place) {
-      const uint32_t triangle = tree.order[place];
-      const Point a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);
-      for (int k = 0; k < 3; ++k) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        sum[k] += (double(b[i]) - a[i]) * (double(c[j]) - a[j]) - (double(b[j]) - a[j]) * (double(c[i]) - a[i]);
-      }
+    for (uint32_t t = first; t < first + count; ++t) {
+      for (int k = 0; k < 3; ++k) sum[k] += normals_[t][k];
     }
     const double length = std::hypot(sum[0], sum[1], sum[2]);
     if (!(length > 0)) return;  // a slab whose normal, middle and half extent are 0 holds every vertex
@@ -150,32 +107,172 @@ class Builder {
       const auto component = static_cast<float>(sum[k] / length);
       node.normal[k] = std::abs(component) < std::numeric_limits<float>::min() ? 0 : component;
     }
-    double least = std::numeric_limits<double>::max(), most = -least;
-    for (uint32_t place = from.first; place < from.first + from.count; ++place) {
-      for (int i = 0; i < 3; ++i) {
-        const Point p = corner(tree.order[place], i);
-        const double at = double(node.normal[0]) * p[0] + double(node.normal[1]) * p[1] + double(node.normal[2]) * p[2];
-        least = std::min(least, at);
-        most = std::max(most, at);
-      }
-    }
+    const auto [least, most] = along(node.normal, 3 * first, 3 * (first + count));
     node.slabMiddle = static_cast<float>(0.5 * (least + most));
     // Rounding errors of the sums are at most 2^-51 of coordinates below 4.
     const double half = std::max(most - node.slabMiddle, node.slabMiddle - least) + 0x1p-48;
     node.slabHalf = nextAbove(static_cast<float>(half));
   }
 
-  const Mesh& mesh_;
+  // The least and the greatest place of corners along a normal.
+  std::pair<double, double> along(const float (&normal)[3], size_t first, size_t last) const {
+    const auto& [x, y, z] = corners_;
+    const auto at = [&](size_t i) { return normal[0] * x[i] + normal[1] * y[i] + normal[2] * z[i]; };
+    double least = at(first), most = least;
+    size_t i = first + 1;
+    if (last - first >= 2 * kLanes) {
+      LaneVec<double> n;
+      for (int k = 0; k < 3; ++k) n[k] = double{normal[k]};
+      const auto lanesAt = [&](size_t from) {
+        LaneVec<double> p;
+        for (int k = 0; k < 3; ++k) p[k] = loaded(&corners_[k][from]);
+        return dot(n, p);
+      };
+      Lanes<double> low = lanesAt(first), high = low;
+      for (i = first + kLanes; i + kLanes <= last; i += kLanes) {
+        const Lanes<double> next = lanesAt(i);
+        low = min(next, low);
+        high = max(next, high);
+      }
+      for (int k = 0; k < kLanes; ++k) {
+        least = std::min(least, low[k]);
+        most = std::max(most, high[k]);
+      }
+    }
+    for (; i < last; ++i) {
+      least = std::min(least, at(i));
+      most = std::max(most, at(i));
+    }
+    return {least, most};
+  }
+
+  static Lanes<double> loaded(const double* from) {
+    Lanes<double> out;
+    std::memcpy(&out, from, sizeof(out));
+    return out;
+  }
+
+  std::vector<FloatBox> boxes_;                 // of the nodes below the part's, which has the last
+  std::array<std::vector<double>, 3> corners_;  // by axis
+  std::vector<Vector> normals_;                 // of triangles, twice as long as their area
 };
+
+// Fits a tree to the corners of its triangles. Nothing but its construction throws.
+class Fitter {
+ public:
+  explicit Fitter(MeshTree& tree) : tree_(tree) {
+    listParts();
+    boxes_.resize(parts_.size());
+    areas_.resize(parts_.size());
+    uint32_t most = 0;
+    for (const Part& part : parts_) most = std::max(most, isLarge(part) ? 0 : tree.below[part.node].count);
+    fitters_.assign(std::min<size_t>(threadCount(0), parts_.size()), PartFitter(most));
+  }
+
+  // Returns how many nodes a random line through the root meets, by the areas of their boxes.
+  double fit(const Mesh& mesh) {
+    parallelFor(tree_.order.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      float* to = &tree_.corners[9 * first];
+      for (size_t place = first; place < last; ++place) {
+        const uint32_t* const vertices = &mesh.indices[3 * size_t{tree_.order[place]}];
+        for (int i = 0; i < 9; ++i) *to++ = mesh.normalised(vertices[i / 3], i % 3);
+      }
+    });
+    parallelFor(parts_.size(), 1, static_cast<unsigned>(fitters_.size()), [&](unsigned worker, size_t i, size_t) {
+      areas_[i] = 0;
+      boxes_[i] = isLarge(parts_[i]) ? kEmpty : fitters_[worker].fit(tree_, parts_[i], areas_[i]);
+    });
+    double areas = 0;
+    for (size_t i = parts_.size(); i-- > 0;) {
+      const Part& part = parts_[i];
+      if (isLarge(part)) fitLarge(part.node, boxes_[i], areas_[i]);
+      if (i != 0) boxes_[part.above] = around(boxes_[i], boxes_[part.above]);
+      areas += areas_[i];
+    }
+    return areas / std::max(halfArea(boxes_[0]), std::numeric_limits<double>::min());
+  }
+
+ private:
+  static constexpr float kMost = std::numeric_limits<float>::max();
+  static constexpr FloatBox kEmpty{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+
+  bool isLarge(const Part& part) const { return tree_.below[part.node].count > kSlabTriangles; }
+
+  // Nodes before those below, left before right.
+  void listParts() {
+    std::vector<Part> open{{0, 1, static_cast<uint32_t>(tree_.nodes.size()), 0}};
+    while (!open.empty()) {
+      const Part part = open.back();
+      open.pop_back();
+      const auto number = static_cast<uint32_t>(parts_.size());
+      parts_.push_back(part);
+      if (!isLarge(part)) continue;
+      const uint32_t left = part.first, right = left + 1;
+      const uint32_t middle = isLeaf(tree_.nodes[right]) ? part.last : tree_.nodes[right].link;
+      open.push_back({right, middle, part.last, number});
+      open.push_back({left, left + 2, middle, number});
+    }
+  }
+
+  void fitLarge(uint32_t i, const FloatBox& box, double& area) {
+    gpu::MeshNode& node = tree_.nodes[i];
+    fitBox(box, node.centre, node.halfExtent);
+    tree_.below[i].least = std::min(tree_.below[node.link].least, tree_.below[node.link + 1].least);
+    area = halfArea(box);
+  }
+
+  MeshTree& tree_;
+  std::vector<Part> parts_;
+  std::vector<FloatBox> boxes_;  // of the parts' nodes
+  std::vector<double> areas_;    // the sum for a part
+  std::vector<PartFitter> fitters_;
+};
+
+std::vector<FloatBox> boxesOfTriangles(const Mesh& mesh) {
+  std::vector<FloatBox> boxes(mesh.triangleCount());
+  parallelFor(boxes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t t = first; t < last; ++t) {
+      float corners[9];
+      for (int i = 0; i < 9; ++i) corners[i] = mesh.normalised(mesh.indices[3 * t + i / 3], i % 3);
+      boxes[t] = boxAround(corners, 3);
+    }
+  });
+  return boxes;
+}
 
 }  // namespace
 
 MeshTree buildMeshTree(const Mesh& mesh) {
-  return Builder(mesh).build();
+  MeshTree tree;
+  {
+    BoxTree from = buildBoxTree(boxesOfTriangles(mesh), kLeafTriangles);
+    tree.order = std::move(from.order);
+    tree.depth = from.depth;
+    tree.nodes.resize(from.nodes.size());
+    tree.below.resize(from.nodes.size());
+    parallelFor(from.nodes.size(), kChunk, 0, [&](unsigned, size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const BoxTree::Node& node = from.nodes[i];
+        tree.below[i] = {node.first, node.count, 0};
+        tree.nodes[i] = {.link = node.child != 0 ? node.child
+                                                 : gpu::kLinkLeaf | (node.count > 1 ? gpu::kLinkPair : 0) | node.first};
+      }
+    });
+  }
+  tree.corners.resize(9 * tree.order.size() + MeshTree::kPadding);
+  std::fill_n(tree.corners.end() - MeshTree::kPadding, MeshTree::kPadding, 0.0f);
+  tree.builtCost = Fitter(tree).fit(mesh);
+  return tree;
 }
 
-void refitMeshTree(const Mesh& mesh, MeshTree& tree) {
-  Builder(mesh).refit(tree);
+void refitMeshTree(const Mesh& mesh, MeshTree& tree, const std::function<void()>& move) {
+  Fitter fitter(tree);
+  move();
+  if (fitter.fit(mesh) <= kRebuildAt * tree.builtCost) return;
+  try {
+    tree = buildMeshTree(mesh);
+  } catch (const std::bad_alloc&) {  // it is worse, but right
+  }
 }
 
 }  // namespace radar

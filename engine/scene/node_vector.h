@@ -1,14 +1,28 @@
-// The nodes of a tree, placed for the processor's cache.
+// The arrays of a tree, its nodes placed for the processor's cache.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <vector>
 
 namespace radar {
 
-/// Memory in which the pairs of siblings of a tree, of which the root comes first, are in as few cache lines as they
-/// fit.
+/// Elements that a vector makes without a value stay unwritten, and take no memory of the system's until they are.
+template <class Value>
+struct UnwrittenAllocator : std::allocator<Value> {
+  template <class Other>
+  struct rebind {
+    using other = UnwrittenAllocator<Other>;
+  };
+  template <class Other>
+  void construct(Other*) {}
+};
+template <class Value>
+using UnwrittenVector = std::vector<Value, UnwrittenAllocator<Value>>;
+
+/// Likewise. Memory in which the pairs of siblings of a tree, of which the root comes first, are in as few cache lines
+/// as they fit.
 template <class Node>
 struct NodeAllocator {
   using value_type = Node;
@@ -20,6 +34,8 @@ struct NodeAllocator {
     return reinterpret_cast<Node*>(static_cast<char*>(::operator new(kGap + count * sizeof(Node), kLine)) + kGap);
   }
   void deallocate(Node* nodes, size_t) { ::operator delete(reinterpret_cast<char*>(nodes) - kGap, kLine); }
+  template <class Other>
+  void construct(Other*) {}
   friend bool operator==(const NodeAllocator&, const NodeAllocator&) { return true; }
 
  private:

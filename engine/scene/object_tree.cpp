@@ -246,15 +246,17 @@ void ObjectTree::build(const Scene::Impl& scene) {
   parallelFor(ids.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) boxes[i] = floatBox(objectBox(scene, ids[i]), anchor_);
   });
-  const BoxTree tree = buildBoxTree(boxes, 1);
+  const BoxTree tree = buildBoxTree(std::move(boxes), 1);
   nodes_.resize(tree.nodes.size());
-  for (size_t i = 0; i < nodes_.size(); ++i) {
-    const BoxTree::Node& from = tree.nodes[i];
-    fitBox(from.box, nodes_[i].centre, nodes_[i].halfExtent);
-    nodes_[i].link = from.child != 0 ? from.child : gpu::kLinkLeaf | ids[tree.order[from.first]];
-  }
   parents_.assign(nodes_.size(), kNone);
-  for (uint32_t i = 0; i < nodes_.size(); ++i) adopt(i);
+  parallelFor(nodes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      const BoxTree::Node& from = tree.nodes[i];
+      nodes_[i] = {.link = from.child != 0 ? from.child : gpu::kLinkLeaf | ids[tree.order[from.first]]};
+      fitBox(from.box, nodes_[i].centre, nodes_[i].halfExtent);
+      adopt(static_cast<uint32_t>(i));
+    }
+  });
   listSubtrees(tree);
   depth_ = tree.depth;
   builtCost_ = cost_ = cost();

@@ -208,7 +208,7 @@ class Builder {
     }
     tree_.nodes[node] = nodeOf(range, below);
     const std::array<Range, 2> sides = split(range);
-    parallelFor(2, 1, 2, [&](unsigned, size_t side, size_t) {
+    parallelFor(2, 1, std::min(2u, threadCount(0)), [&](unsigned, size_t side, size_t) {
       build(sides[side], below + side, side == 0 ? below + 2 : below + 2 * sides[0].count, depth + 1);
     });
   }

@@ -42,7 +42,7 @@ TEST_CASE("chart leaves numbers, charts and tables, and draws them again from it
 TEST_CASE("chart measures only the sections that are named") {
   const ScratchFolder folder;
   const Run run =
-      runLab(folder, "chart --extent least --section growth,contacts,edits,recorded,clearances,turns --out c");
+      runLab(folder, "chart --extent least --section growth,contacts,edits,trees,recorded,clearances,turns --out c");
   INFO(run.err);
   CHECK(run.status == 0);
   CHECK_THAT(folder.read("c/growth.csv"), Contains("\nteapots-leaving-ignored,contact,64,"));
@@ -53,6 +53,7 @@ TEST_CASE("chart measures only the sections that are named") {
       CHECK(csv.substr(end - 2, 2) == ",0");  // answers that differ
     }
   }
+  CHECK_THAT(folder.read("c/trees.csv"), Contains("\n1000 triangles,") && Contains("\n1000 objects,"));
   CHECK_THAT(folder.read("c/clearances.csv"),
              Contains("\nball of radius 3,16,") && Contains("\n\"teapots, with clearances\",32,"));
   CHECK_THAT(folder.read("c/turns.csv"),

@@ -42,6 +42,15 @@ class RigidBodies {
 /// None if libraries are not built. The workload outlives it.
 std::unique_ptr<RigidBodies> makeRigidBodies(const Workload& workload);
 
+/// What trees take: seconds, and the bytes that are held then, with those of what they are over.
+struct TreeCost {
+  double build = 0, refit = 0, bytes = 0;
+};
+/// Of Embree's tree over a mesh, of medium quality, on all cores, its vertices moved for the refit; or over instances
+/// of it at `places`, if there are any, to which they are moved again. None if libraries are not built.
+std::optional<TreeCost> embreeTree(const MeshData& mesh, std::span<const float> moved,
+                                   std::span<const Transform> places);
+
 /// A row of the chart: a library, used in one way.
 struct BaselineRow {
   std::string family;

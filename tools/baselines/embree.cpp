@@ -1,6 +1,8 @@
 // Embree, in two ways: a ray per pixel from the sensor's front into the scene, like the paper's pictures; or a ray from
 // each vertex, of the sensor into the scene and of the scene back onto the sensor.
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <stdexcept>
 
 #include "baselines/rigid.h"
@@ -126,65 +128,84 @@ struct Packet {
   bool hit(uint32_t lane) const { return valid[lane] != 0 && rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
 };
 
+using DeviceHandle = std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)>;
+
+DeviceHandle openDevice(const char* options) {
+  DeviceHandle device(rtcNewDevice(options), rtcReleaseDevice);
+  if (!device) throw std::runtime_error("does not open");
+  return device;
+}
+
+SceneHandle newScene(RTCDevice device) {
+  SceneHandle scene(rtcNewScene(device), rtcReleaseScene);
+  rtcSetSceneFlags(scene.get(),
+                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS));
+  return scene;
+}
+
+SceneHandle sceneOf(RTCDevice device, const MeshData& mesh, RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM) {
+  SceneHandle scene = newScene(device);
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryBuildQuality(geometry, quality);
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                           mesh.vertexCount());
+  std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<float*>(vertices));
+  void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
+                                          mesh.triangleCount());
+  std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<uint32_t*>(indices));
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene.get());
+  return scene;
+}
+
+void setPlace(RTCGeometry instance, const Transform& worldFromMesh) {
+  float transform[12];
+  std::copy(worldFromMesh.m.begin(), worldFromMesh.m.end(), transform);
+  rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, transform);
+  rtcCommitGeometry(instance);
+}
+
+void addInstance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned number, const Transform& worldFromMesh) {
+  const RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(instance, mesh);
+  setPlace(instance, worldFromMesh);
+  rtcAttachGeometryByID(top, instance, number);
+  rtcReleaseGeometry(instance);
+}
+
 class Embree : public SceneBaseline {
  public:
   Embree(const Workload& workload, uint32_t)
-      : workload_(workload), device_(rtcNewDevice("threads=1"), rtcReleaseDevice), top_(nullptr, rtcReleaseScene) {
-    if (!device_) throw std::runtime_error("does not open");
+      : workload_(workload), device_(openDevice("threads=1")), top_(nullptr, rtcReleaseScene) {
     if (rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) == 0) {
       throw std::runtime_error("has no packets of 8 rays on this processor");
     }
-    for (const MeshData& mesh : workload.meshes) meshes_.push_back(sceneOf(mesh));
+    for (const MeshData& mesh : workload.meshes) meshes_.push_back(sceneOf(device_.get(), mesh));
   }
 
  protected:
-  SceneHandle newScene() {
-    SceneHandle scene(rtcNewScene(device_.get()), rtcReleaseScene);
-    rtcSetSceneFlags(scene.get(),
-                     static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS));
-    return scene;
-  }
-
-  SceneHandle sceneOf(const MeshData& mesh) {
-    SceneHandle scene = newScene();
-    const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                             mesh.vertexCount());
-    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<float*>(vertices));
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                            mesh.triangleCount());
-    std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<uint32_t*>(indices));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene.get(), geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene.get());
-    return scene;
-  }
-
   void begin(size_t count) override {
-    top_ = newScene();
+    top_ = newScene(device_.get());
     boxes_.assign(count, {});
   }
 
   void place(size_t number, const Instance& object, bool anew) override {
     const MeshData& mesh = workload_.meshes[object.mesh];
     boxes_[number] = boundsOf({mesh.positions, mesh.indices}, object.worldFromMesh);
-    const RTCGeometry instance = anew ? rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE)
-                                      : rtcGetGeometry(top_.get(), static_cast<unsigned>(number));
-    rtcSetGeometryInstancedScene(instance, meshes_[object.mesh].get());
-    float transform[12];
-    std::copy(object.worldFromMesh.m.begin(), object.worldFromMesh.m.end(), transform);
-    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, transform);
-    rtcCommitGeometry(instance);
-    if (!anew) return;
-    rtcAttachGeometryByID(top_.get(), instance, static_cast<unsigned>(number));
-    rtcReleaseGeometry(instance);
+    const auto at = static_cast<unsigned>(number);
+    if (anew) {
+      addInstance(device_.get(), top_.get(), meshes_[object.mesh].get(), at, object.worldFromMesh);
+    } else {
+      setPlace(rtcGetGeometry(top_.get(), at), object.worldFromMesh);
+    }
   }
 
   void end(bool) override { rtcCommitScene(top_.get()); }
 
   const Workload& workload_;
-  std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device_;
+  DeviceHandle device_;
   std::vector<SceneHandle> meshes_;
   SceneHandle top_;
   std::vector<Bounds> boxes_;
@@ -281,7 +302,60 @@ class VertexRays : public Embree {
   }
 };
 
+template <class Work>
+double secondsOf(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 }  // namespace
+
+std::optional<TreeCost> embreeTree(const MeshData& mesh, std::span<const float> moved,
+                                   std::span<const Transform> places) {
+  std::atomic<ptrdiff_t> held = 0;
+  const DeviceHandle device = openDevice("");
+  rtcSetDeviceMemoryMonitorFunction(
+      device.get(),
+      [](void* sum, ssize_t bytes, bool) {
+        *static_cast<std::atomic<ptrdiff_t>*>(sum) += bytes;
+        return true;
+      },
+      &held);
+  TreeCost cost;
+  SceneHandle below(nullptr, rtcReleaseScene), top(nullptr, rtcReleaseScene);
+  const double build = secondsOf([&] { below = sceneOf(device.get(), mesh); });
+  if (places.empty()) {
+    cost.build = build;
+    cost.bytes = static_cast<double>(held);
+    below = sceneOf(device.get(), mesh, RTC_BUILD_QUALITY_REFIT);
+    cost.refit = secondsOf([&] {
+      const RTCGeometry geometry = rtcGetGeometry(below.get(), 0);
+      std::copy(moved.begin(), moved.end(),
+                static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)));
+      rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+      rtcCommitGeometry(geometry);
+      rtcCommitScene(below.get());
+    });
+    return cost;
+  }
+  const ptrdiff_t before = held;
+  cost.build = secondsOf([&] {
+    top = newScene(device.get());
+    for (size_t i = 0; i < places.size(); ++i) {
+      addInstance(device.get(), top.get(), below.get(), static_cast<unsigned>(i), places[i]);
+    }
+    rtcCommitScene(top.get());
+  });
+  cost.bytes = static_cast<double>(held - before);
+  cost.refit = secondsOf([&] {
+    for (size_t i = 0; i < places.size(); ++i) {
+      setPlace(rtcGetGeometry(top.get(), static_cast<unsigned>(i)), places[i]);
+    }
+    rtcCommitScene(top.get());
+  });
+  return cost;
+}
 
 std::vector<BaselineRow> embreeRows() {
   const std::string product = "Embree " RTC_VERSION_STRING;

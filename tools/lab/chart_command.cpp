@@ -14,6 +14,7 @@
 #include "measure/clearances.h"
 #include "measure/developer.h"
 #include "measure/plot.h"
+#include "measure/trees.h"
 #include "measure/turning.h"
 
 namespace radar::tools {
@@ -104,6 +105,7 @@ Json measure(const Options& options) {
   Progress progress("measuring", cells);
   measureCases({extent, cases, methods}, report, options.out, [&] { progress.add(1); });
   if (options.has("edits")) measureEdits(device, extent, report);
+  if (options.has("trees")) measureTrees(extent, embreeTree, report);
   if (options.has("recorded")) measureRecorded(device, extent, report);
   if (options.has("clearances")) measureClearances(extent, report);
   if (options.has("turns")) measureTurns(extent, makeRigidBodies, report);
@@ -123,7 +125,7 @@ void chart(Options options) {
   Json report = options.render ? readReport(options.out) : measure(options);
   const std::string whyUndrawn = tools::whyUndrawn();
   sumUp(report, options.out, whyUndrawn.empty());
-  for (const char* name : {"workloads", "methods", "growth", "edits", "recorded", "clearances", "turns"}) {
+  for (const char* name : {"workloads", "methods", "growth", "edits", "trees", "recorded", "clearances", "turns"}) {
     Json& part = partOf(report, name);
     if (!part["rows"].empty()) std::cout << part["title"].get<std::string>() << ":\n" << textOf(part["rows"]) << "\n";
   }
@@ -150,13 +152,15 @@ void addChartCommand(Program& program) {
   command.option("--extent", &options->extent, "How much: full; quick, about a minute; least, to try it out")
       .oneOf({"full", "quick", "least"});
   command
-      .option("--section", &options->sections,
-              "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own searches: "
-              "search, by size of batch; contacts, by kind; edits of a scene; recorded in a host's command buffer; "
-              "clearances; turns, "
-              "motions that turn, and an arm's")
+      .option(
+          "--section", &options->sections,
+          "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own searches: "
+          "search, by size of batch; contacts, by kind; edits of a scene; trees, built and refitted, beside Embree's; "
+          "recorded in a host's command buffer; "
+          "clearances; turns, "
+          "motions that turn, and an arm's")
       .list()
-      .oneOf({"front", "table1", "growth", "search", "contacts", "edits", "recorded", "clearances", "turns"});
+      .oneOf({"front", "table1", "growth", "search", "contacts", "edits", "trees", "recorded", "clearances", "turns"});
   command.option("--render", &options->render, "Measure nothing: draw what --out holds");
   command.run([options] {
     chart(*options);

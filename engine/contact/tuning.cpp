@@ -1,8 +1,8 @@
 #include "contact/tuning.h"
 
 #include <algorithm>
-#include <thread>
 
+#include "scene/parallel.h"
 #include "shaders/contact/interop.h"
 
 namespace radar {
@@ -67,8 +67,7 @@ uint32_t groupsFor(const SearchTuning& tuning, const Device::Impl& device, uint3
 uint32_t widthFor(const SearchTuning& tuning, const Device::Impl& device, uint32_t searches) {
   if (tuning.width != 0) return tuning.width;
   // On the CPU, as many lanes are at work as threads times the width of a vector.
-  const uint32_t groups =
-      device.runsOnCpu() ? std::max(1u, std::thread::hardware_concurrency()) : groupsFor(tuning, device, searches);
+  const uint32_t groups = device.runsOnCpu() ? threadCount(0) : groupsFor(tuning, device, searches);
   return 2 * groups * device.subgroupSize;
 }
 

@@ -25,16 +25,12 @@ void BracketedContact::consider(const exact::PairName& name, const exact::Placed
   const std::optional<Approach> found = bracketOf(name, pair);
   if (!found) return;
   Near near{name, *found, found->lo};
-  const bool matters = best_.empty() || near.lo < best_[0].lo || near.precedes(best_[0]);
+  const bool matters = !best_ || near.lo < best_->lo || near.precedes(*best_);
   if (!matters || !counts(pair)) return;
   lo_ = std::min(lo_, near.lo);
-  if (best_.empty()) {
-    best_.push_back(near);
-  } else {
-    near.lo = best_[0].lo = std::min(near.lo, best_[0].lo);
-    if (!near.precedes(best_[0])) return;
-    best_[0] = near;
-  }
+  if (best_) near.lo = best_->lo = std::min(near.lo, best_->lo);
+  if (best_ && !near.precedes(*best_)) return;
+  best_ = near;
   if (near.isCertain() && !std::isnan(near.approach.atLo.normal[0])) across_ = near.approach.atLo.normal;
   atStart_ = near.approach.hi == 0;
   // Of what meets at the start, the caller finds the pair to name, but for a turn that may leave.
@@ -46,14 +42,14 @@ void BracketedContact::consider(const exact::PairName& name, const exact::Placed
 }
 
 void BracketedContact::endObject() {
-  if (query_.hits == 1 || best_.empty()) return;
-  if (best_[0].isCertain()) {
-    latest_ = std::min(end_, addNearest(nearest_, query_.hits, best_[0]));
+  if (query_.hits == 1 || !best_) return;
+  if (best_->isCertain()) {
+    latest_ = std::min(end_, addNearest(nearest_, query_.hits, *best_));
     atStart_ = false;
   } else {
-    open_.push_back(best_[0]);
+    open_.push_back(*best_);
   }
-  best_.clear();
+  best_.reset();
 }
 
 Result BracketedContact::answer(const Near& near) const {
@@ -73,9 +69,8 @@ Result BracketedContact::answer(const Near& near) const {
 }
 
 Result BracketedContact::first() const {
-  const std::vector<Near>& found = !nearest_.empty() ? nearest_ : !best_.empty() ? best_ : open_;
-  if (found.empty()) return Result(Status::clear);
-  Near first = found[0];
+  if (nearest_.empty() && !best_ && open_.empty()) return Result(Status::clear);
+  Near first = !nearest_.empty() ? nearest_[0] : best_ ? *best_ : open_[0];
   first.lo = lo_;
   if (first.isCertain() && !query_.anyHit) return answer(first);
   // No ids, as of any decision and of what is undecided.

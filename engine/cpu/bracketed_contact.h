@@ -18,7 +18,7 @@ class BracketedContact : public PairVisitor {
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) final;
   Result first() const;
   /// Whether the first contact found so far is one with the object.
-  bool isFirst(ObjectId object) const { return !best_.empty() && best_[0].name.object == object; }
+  bool isFirst(ObjectId object) const { return best_ && best_->name.object == object; }
   std::vector<Result> nearest() const;
 
  protected:
@@ -32,7 +32,7 @@ class BracketedContact : public PairVisitor {
   /// Whether a pair that meets is a contact of the query. Asked last.
   virtual bool counts(const exact::PlacedPair& pair) const = 0;
   /// Whether a pair was found: of the current object, if several are asked for.
-  bool hasFound() const { return !best_.empty(); }
+  bool hasFound() const { return best_.has_value(); }
 
   const Query& query_;
 
@@ -50,7 +50,7 @@ class BracketedContact : public PairVisitor {
 
   double end_, tolerance_;
   double lo_;                  // nothing meets before this
-  std::vector<Near> best_;     // at most one: of all objects, or of the current one if several are asked for
+  std::optional<Near> best_;   // of all objects, or of the current one if several are asked for
   std::vector<Near> nearest_;  // one per object, earliest first
   std::vector<Near> open_;     // of objects that rounding leaves open
 };

@@ -35,8 +35,8 @@ struct ChainPlan {
   ChainPlan(const Chain& chain, const Scene::Impl& scene);
 };
 
-/// Reuses its memory between queries. For one thread at a time.
-class ChainSearch {
+/// Reuses its memory between queries. For one thread at a time; those of several threads share no cache line.
+class alignas(kThreadLines) ChainSearch {
  public:
   /// Answers a valid query. Throws Cancelled soon after `stop` is requested.
   ChainResult answer(const ChainQuery& query, const Chain& chain, const ChainPlan& plan, const Scene::Impl& scene,

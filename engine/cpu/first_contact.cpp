@@ -5,8 +5,8 @@
 
 namespace radar::cpu {
 
-FirstContact::FirstContact(const Query& query, const Translation& motion)
-    : PairVisitor(motion.end), query_(query), motion_(&motion), earliest_(motion) {}
+FirstContact::FirstContact(const Query& query, const Translation& motion, std::vector<exact::TouchingPair> memory)
+    : PairVisitor(motion.end), query_(query), motion_(&motion), earliest_(motion, std::move(memory)) {}
 
 void FirstContact::beginObject(const PairRule& rule, const Translation& motion) {
   rule_ = rule;

@@ -115,8 +115,9 @@ double addNearest(std::vector<Contact>& nearest, size_t most, Contact contact) {
 
 class FirstContact final : public PairVisitor {
  public:
-  /// `query` and `motion` must outlive this.
-  FirstContact(const Query& query, const Translation& motion);
+  /// `query` and `motion` must outlive this. `memory`: what an earlier one gave back, so that none is allocated.
+  FirstContact(const Query& query, const Translation& motion, std::vector<exact::TouchingPair> memory = {});
+  std::vector<exact::TouchingPair> giveBack() { return earliest_.giveBack(); }
 
   /// Call before and after the pairs of one object. `rule` matters only if the query ignores pairs that do not block.
   /// `motion` must stay in place until the next object, or until the answers are taken.

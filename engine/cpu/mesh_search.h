@@ -11,6 +11,9 @@
 
 namespace radar::cpu {
 
+/// What one thread writes has cache lines of its own, in pairs, as processors fetch them.
+inline constexpr size_t kThreadLines = 128;
+
 /// A mesh and its pose.
 struct PlacedMesh {
   const Mesh& mesh;

@@ -86,7 +86,9 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
     first = find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
     describeStart(query, scene, tree, skipped, first, lists);
   } else {
-    first = find(FirstContact(query, task.motion));
+    FirstContact finder(query, task.motion, std::move(touching_));
+    first = find(finder);
+    touching_ = finder.giveBack();
   }
   if (query.exit) lists->exit = lastContact(task, tree, skipped, first);
   if (query.closest) lists->closest = closestApproach(query, scene, tree, skipped, first);

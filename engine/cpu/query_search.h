@@ -12,8 +12,8 @@
 
 namespace radar::cpu {
 
-/// Reuses its memory between queries. For one thread at a time.
-class QuerySearch {
+/// Reuses its memory between queries. For one thread at a time; those of several threads share no cache line.
+class alignas(kThreadLines) QuerySearch {
  public:
   /// Answers a valid query, without tiers. `tree` is the scene's; neither changes meanwhile. `lists`: may be null if
   /// the query asks for none. Throws Cancelled soon after `stop` is requested.
@@ -48,6 +48,7 @@ class QuerySearch {
 
   const std::stop_token* stop_ = nullptr;  // of the answer in hand
   std::optional<Translation> past_;        // the sensor's motion past the current object, in a step
+  std::vector<exact::TouchingPair> touching_;
   MeshSearch meshes_;
   NearestSearch nearest_;
   CutterSearch cutters_;

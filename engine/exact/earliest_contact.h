@@ -14,6 +14,12 @@ class EarliestContact {
  public:
   /// `motion` must stay in place while pairs are considered.
   explicit EarliestContact(const Translation& motion) : motion_(&motion), kept_(motion) {}
+  /// In the memory that an earlier one gave back.
+  EarliestContact(const Translation& motion, std::vector<TouchingPair> memory) : EarliestContact(motion) {
+    touching_ = std::move(memory);
+    touching_.clear();
+  }
+  std::vector<TouchingPair> giveBack() { return std::move(touching_); }
 
   /// The motion of the pairs that are considered next: in a step, each object has its own.
   void setMotion(const Translation& motion) { motion_ = &motion; }

@@ -54,8 +54,8 @@ inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, 
   const uint32_t item = node.link & gpu::kLinkItem;
   const void* next = nodes + item;
   if ((node.link & gpu::kLinkLeaf) != 0) next = &scene.objects[item];
-  __builtin_prefetch(next);
-  __builtin_prefetch(static_cast<const char*>(next) + 64);
+  // An object is in up to three lines; and so are nodes that come soon after.
+  for (const int line : {0, 64, 128}) __builtin_prefetch(static_cast<const char*>(next) + line);
 }
 
 }  // namespace detail

@@ -167,7 +167,9 @@ void endLoopThreads() {
 }
 
 unsigned threadCount(unsigned threads) {
-  return threads != 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
+  // The system reads a file to tell, which takes longer than a query.
+  static const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  return threads != 0 ? threads : cores;
 }
 
 void parallelFor(size_t count, size_t chunk, unsigned threads, const void* work, ChunkCall call) {

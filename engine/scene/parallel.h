@@ -25,7 +25,7 @@ void parallelFor(size_t count, size_t chunk, unsigned threads, const Work& work)
 /// Ends those threads, while no loop runs. The next loop starts others.
 void endLoopThreads();
 
-/// `threads`, or the number of cores if it is 0.
+/// `threads`, or the number of cores if it is 0, as the first call found it.
 unsigned threadCount(unsigned threads);
 
 }  // namespace radar

@@ -190,3 +190,30 @@ TEST_CASE("batches on the device that repeat allocate nothing") {
   onCpu.run(queries, answers);
   CHECK(sameContacts(answers, expected));
 }
+
+TEST_CASE("queries that are asked one by one again allocate nothing and start no thread") {
+  const tools::Workload workload =
+      tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 100, .shape = tools::SensorShape::box});
+  tools::ScenePlayer player(workload);
+  player.show(0);
+  std::vector<Query> queries(workload.queries.begin(), workload.queries.end());
+  const double clearance = GENERATE(0.0, 0.1);
+  for (Query& query : queries) query.clearance = clearance;
+  CpuSweeper sweeper(player.scene(), 4);
+  Answers answers;
+  const auto askAll = [&] {
+    size_t touching = 0;
+    for (const Query& query : queries) {
+      sweeper.run({&query, 1}, answers);
+      touching += answers.results[0].status == Status::hit;
+    }
+    return touching;
+  };
+  CHECK(askAll() > 30);
+  {
+    const test::EngineWork counting;
+    test::host_memory::failAt(-1);
+    askAll();
+  }
+  CHECK(test::host_memory::requests() == 0);
+}

@@ -27,7 +27,9 @@ using Clock = std::chrono::steady_clock;
 template <class Work>
 void inParts(size_t count, const Work& work) {
   constexpr size_t kLeast = 2048;  // queries that take longer to convert than a thread to start
-  const size_t parts = std::clamp<size_t>(count / kLeast, 1, std::max(1u, std::thread::hardware_concurrency()));
+  // The number of cores takes longer to ask for than a query.
+  const size_t most = count / kLeast > 1 ? std::max(1u, std::thread::hardware_concurrency()) : 1;
+  const size_t parts = std::clamp<size_t>(count / kLeast, 1, most);
   std::vector<std::jthread> others;
   for (size_t i = 1; i < parts; ++i) {
     others.emplace_back([&, i] { work(i * count / parts, (i + 1) * count / parts); });

@@ -41,8 +41,8 @@ TEST_CASE("chart leaves numbers, charts and tables, and draws them again from it
 
 TEST_CASE("chart measures only the sections that are named") {
   const ScratchFolder folder;
-  const Run run =
-      runLab(folder, "chart --extent least --section growth,contacts,edits,trees,recorded,clearances,turns --out c");
+  const Run run = runLab(
+      folder, "chart --extent least --section growth,contacts,edits,trees,recorded,clearances,turns,single --out c");
   INFO(run.err);
   CHECK(run.status == 0);
   CHECK_THAT(folder.read("c/growth.csv"), Contains("\nteapots-leaving-ignored,contact,64,"));
@@ -58,6 +58,9 @@ TEST_CASE("chart measures only the sections that are named") {
              Contains("\nball of radius 3,16,") && Contains("\n\"teapots, with clearances\",32,"));
   CHECK_THAT(folder.read("c/turns.csv"),
              Contains("\nboxes,turning by 30 degrees,64,") && Contains("arm, up to 1 rad a joint\",all,"));
+  CHECK_THAT(folder.read("c/single.csv"),
+             Contains("\nbox,CpuSweeper,16,") && Contains("\nellipsoid of 168 triangles,"));
+  CHECK_THAT(folder.read("c/threads.csv"), Contains("\n16,1,"));
   CHECK_THAT(folder.read("c/growth-boxes.svg"), Contains("More of the scene"));
   CHECK_THAT(folder.read("c/growth.csv"), Contains("\ngrowth-sensors,contact,1,"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "c/front.csv"));

@@ -1,5 +1,5 @@
 // Bullet: sweeps of a convex shape through trees of triangles. A sensor is swept as its hull, or triangle by triangle,
-// each no farther than the best so far. Margins are 0.
+// each no farther than the best so far; objects are trees of triangles or hulls. Margins are 0.
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <LinearMath/btConvexHullComputer.h>
 #include <btBulletCollisionCommon.h>
@@ -43,6 +43,11 @@ std::unique_ptr<btConvexHullShape> hullOf(const std::vector<btVector3>& points) 
   return shape;
 }
 
+btConvexHullShape& hullOf(Shape& shape) {
+  if (!shape.hull) shape.hull = hullOf(shape.corners);
+  return *shape.hull;
+}
+
 btTransform transformOf(const RigidPose& pose) {
   const auto& r = pose.rotation;
   return btTransform(btMatrix3x3(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]), vectorOf(pose.at.data()));
@@ -58,7 +63,10 @@ struct Closest : btCollisionWorld::ClosestConvexResultCallback {
   const Query& query;
 };
 
-template <bool byTriangle>
+/// What is cast, and past what.
+enum class Cast { triangles, hull, hullPastHulls };
+
+template <Cast kind>
 class Bullet : public SceneBaseline {
  public:
   Bullet(const Workload& workload, uint32_t) : shapes_(workload, shapeOf) {}
@@ -73,15 +81,14 @@ class Bullet : public SceneBaseline {
     to.setOrigin(from.getOrigin() + query.distance * vectorOf(v.data()));
     Closest closest(query, from.getOrigin(), to.getOrigin());
     const auto sweep = [&](const btConvexShape& moving) { world_.convexSweepTest(&moving, from, to, closest, 0); };
-    if constexpr (byTriangle) {
+    if constexpr (kind == Cast::triangles) {
       for (size_t i = 0; i < shape.corners.size(); i += 3) {
         btTriangleShape triangle(shape.corners[i], shape.corners[i + 1], shape.corners[i + 2]);
         triangle.setMargin(0);
         sweep(triangle);
       }
     } else {
-      if (!shape.hull) shape.hull = hullOf(shape.corners);
-      sweep(*shape.hull);
+      sweep(hullOf(shape));
     }
     if (!closest.hasHit()) return std::nullopt;
     return closest.m_closestHitFraction * query.distance;
@@ -98,7 +105,12 @@ class Bullet : public SceneBaseline {
     const RigidPose pose = rigidPose(instance.worldFromMesh);
     if (anew) objects_[number] = std::make_unique<btCollisionObject>();
     btCollisionObject* object = objects_[number].get();
-    object->setCollisionShape(shapes_.of(instance.mesh, pose).tree.get());
+    Shape& shape = shapes_.of(instance.mesh, pose);
+    if constexpr (kind == Cast::hullPastHulls) {
+      object->setCollisionShape(&hullOf(shape));
+    } else {
+      object->setCollisionShape(shape.tree.get());
+    }
     object->setWorldTransform(transformOf(pose));
     object->setUserIndex(static_cast<int>(number));
     if (anew) {
@@ -126,14 +138,21 @@ std::vector<BaselineRow> bulletRows() {
            .limits = "casts only convex shapes, and any other sensor as its hull, which is a different shape. No "
                      "certificate; deforming meshes need new trees.",
            .sizes = {0},
-           .make = make<Bullet<false>>},
+           .sections = {"front", "table1", "growth", "single"},
+           .make = make<Bullet<Cast::hull>>},
+          {.family = "Bullet hull past hulls",
+           .product = product,
+           .limits = "casts only convex shapes past convex shapes, and takes any other as its hull. No certificate.",
+           .sizes = {0},
+           .sections = {"single"},
+           .make = make<Bullet<Cast::hullPastHulls>>},
           {.family = "Bullet triangles",
            .product = product,
            .limits = "casts the sensor triangle by triangle: any shape, at the cost of that many casts. No "
                      "certificate; deforming meshes need new trees.",
            .sizes = {0},
            .sections = {"front"},
-           .make = make<Bullet<true>>}};
+           .make = make<Bullet<Cast::triangles>>}};
 }
 
 }  // namespace radar::tools

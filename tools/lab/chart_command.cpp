@@ -14,6 +14,7 @@
 #include "measure/clearances.h"
 #include "measure/developer.h"
 #include "measure/plot.h"
+#include "measure/single.h"
 #include "measure/trees.h"
 #include "measure/turning.h"
 
@@ -109,6 +110,7 @@ Json measure(const Options& options) {
   if (options.has("recorded")) measureRecorded(device, extent, report);
   if (options.has("clearances")) measureClearances(extent, report);
   if (options.has("turns")) measureTurns(extent, makeRigidBodies, report);
+  if (options.has("single")) measureSingle(extent, libraries, report);
   return report;
 }
 
@@ -125,7 +127,8 @@ void chart(Options options) {
   Json report = options.render ? readReport(options.out) : measure(options);
   const std::string whyUndrawn = tools::whyUndrawn();
   sumUp(report, options.out, whyUndrawn.empty());
-  for (const char* name : {"workloads", "methods", "growth", "edits", "trees", "recorded", "clearances", "turns"}) {
+  for (const char* name :
+       {"workloads", "methods", "growth", "edits", "trees", "recorded", "clearances", "turns", "single", "threads"}) {
     Json& part = partOf(report, name);
     if (!part["rows"].empty()) std::cout << part["title"].get<std::string>() << ":\n" << textOf(part["rows"]) << "\n";
   }
@@ -152,15 +155,14 @@ void addChartCommand(Program& program) {
   command.option("--extent", &options->extent, "How much: full; quick, about a minute; least, to try it out")
       .oneOf({"full", "quick", "least"});
   command
-      .option(
-          "--section", &options->sections,
-          "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own searches: "
-          "search, by size of batch; contacts, by kind; edits of a scene; trees, built and refitted, beside Embree's; "
-          "recorded in a host's command buffer; "
-          "clearances; turns, "
-          "motions that turn, and an arm's")
+      .option("--section", &options->sections,
+              "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own searches: "
+              "search, by size of batch; contacts, by kind; edits of a scene; trees, built and refitted, beside "
+              "Embree's; recorded in a host's command buffer; "
+              "clearances; turns, motions that turn, and an arm's; single, one query at a time, and on more threads")
       .list()
-      .oneOf({"front", "table1", "growth", "search", "contacts", "edits", "trees", "recorded", "clearances", "turns"});
+      .oneOf({"front", "table1", "growth", "search", "contacts", "edits", "trees", "recorded", "clearances", "turns",
+              "single"});
   command.option("--render", &options->render, "Measure nothing: draw what --out holds");
   command.run([options] {
     chart(*options);

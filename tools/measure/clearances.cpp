@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "measure/timing.h"
+#include "measure/single.h"
 #include "radar/cpu_sweeper.h"
 #include "workloads/drop_cutter.h"
 #include "workloads/generate.h"
@@ -13,36 +13,17 @@ namespace radar::tools {
 
 namespace {
 
-void addRow(Json& report, const std::string& workload, std::span<const double> seconds, size_t touching) {
-  const std::vector<double> all(seconds.begin(), seconds.end());
-  double sum = 0;
-  for (const double each : all) sum += each;
-  partOf(report, "clearances", "Section clearances, microseconds a query, one thread")["rows"].push_back(
-      {{"workload", workload},
-       {"queries", all.size()},
-       {"mean", 1e6 * sum / static_cast<double>(all.size())},
-       {"median", 1e6 * median(all)},
-       {"99_percent", 1e6 * quantile(all, 0.99)},
-       {"slowest", 1e6 * quantile(all, 1)},
-       {"touching", touching}});
-}
-
-/// Times each query alone, after the same batch in one call: the least of three times, since the machine has more to
-/// do.
+/// Times each query alone.
 void ask(const std::string& workload, const Scene& scene, std::span<const Query> queries, Json& report) {
   CpuSweeper sweeper(scene, 1);
   Answers answers;
-  sweeper.run(queries, answers);
   size_t touching = 0;
-  for (const Result& result : answers.results) touching += result.status != Status::clear;
-  std::vector<double> seconds(queries.size(), INFINITY);
-  for (int pass = 0; pass < 3; ++pass) {
-    for (size_t i = 0; i < queries.size(); ++i) {
-      const auto one = [&] { sweeper.run(queries.subspan(i, 1), answers); };
-      seconds[i] = std::min(seconds[i], lapOf(one).wall);
-    }
-  }
-  addRow(report, workload, seconds, touching);
+  for (const Result& result : sweeper.run(queries).results) touching += result.status != Status::clear;
+  const Ask alone = [&](const Query& query) { sweeper.run({&query, 1}, answers); };
+  Json row{{"workload", workload}};
+  row.update(latencies(secondsAlone(queries, {&alone, 1}).front()));
+  row["touching"] = touching;
+  partOf(report, "clearances", "Section clearances, microseconds a query, one thread")["rows"].push_back(row);
 }
 
 MeshId add(Scene& scene, const MeshData& mesh) {

@@ -16,7 +16,8 @@ Json latencies(std::span<const double> seconds);
 /// Section single, on the CPU, among Table 1's 30,000 boxes. A row of the part `single` for each shape of sensor and
 /// each way to cast it, one by one: by a CpuSweeper, and by the `libraries` that cast a convex shape; "wrong" counts
 /// their contacts that are none, and those they miss. A row of the part `threads` for each size of a batch and each
-/// number of threads up to the processor's; "efficiency" is the time on one thread over that on all, together.
+/// number of threads up to the processor's: of nine passes the least time, and processor time of all threads;
+/// "efficiency" is the time on one thread over that on all, together.
 void measureSingle(Extent extent, std::span<const BaselineRow> libraries, Json& report);
 
 }  // namespace radar::tools

@@ -15,7 +15,6 @@ import bayonet  # noqa: E402
 import burr  # noqa: E402
 import cyber_radar  # noqa: E402
 import disassembly  # noqa: E402
-import robot_links  # noqa: E402
 from conftest import numbers, page_data  # noqa: E402
 from test_scene import ENGINE  # noqa: E402
 
@@ -138,24 +137,3 @@ def test_a_robot_of_a_file_may_move_among_the_shelves(tmp_path):
     text = run("arm.py", tmp_path / "robot.urdf", "--motions", 50, "--segments", 8, "--out", tmp_path / "out")
     assert text.startswith("50 motions: ")
     assert [file.name for file in (tmp_path / "out").iterdir()] == ["contact.html"]
-
-
-def test_the_links_of_an_arm_touch_first_what_they_come_near_at_moments_of_the_turn(tmp_path):
-    text = run("robot_links.py", "--motions", 300, "--out", tmp_path)
-    assert text.startswith("300 motions: ") and "a motion of 6 links" in text
-    assert page_data(tmp_path / "contacts.html")["queries"]["count"] > 5
-
-    scene, rng = cyber_radar.Scene(), np.random.default_rng(3)
-    arm.add_shelves(scene, rng)
-    links = robot_links.Arm(scene)
-    starts = links.free_configurations(300, rng)
-    joints, angles = rng.integers(0, 6, 300), rng.uniform(-1.5, 1.5, 300)
-    casts = links.cast(starts, joints, angles)
-    whether = links.cast(starts, joints, angles, any_hit=True)
-    assert (whether.touches == casts.touches).all() and 20 < casts.touches.any(axis=1).sum() < 200
-    # The arm as it stands at moments of the motion, by its own kinematics.
-    for share in (0.25, 0.5, 1.0):
-        at_moment = starts.copy()
-        at_moment[np.arange(300), joints] += share * angles
-        rests = scene.cast(links.meshes, links.chain.poses(at_moment), [0, 0, 0], any_hit=True, mode="reference").touches
-        assert (casts.lo[rests] <= share + 1e-6).all()

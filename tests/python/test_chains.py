@@ -128,34 +128,6 @@ def test_a_page_plays_moves(tmp_path):
         pickle.loads(pickle.dumps(moves)).show(tmp_path / "page.html")
 
 
-def test_a_forearm_folds_back_onto_its_upper_arm_at_the_angle_that_geometry_says():
-    scene = cyber_radar.Scene()
-    upper, finger = scene.add_mesh(box(10, 1, 1), FACES), scene.add_mesh(box(1, 2, 1), FACES)
-    links = [
-        Link("upper", joint="revolute", axis=[0, 0, 1], meshes=[(upper, at([5, 0, 0]))]),
-        Link("fore", "upper", "revolute", at([10, 0, 0]), [0, 0, -2], [(finger, at([6, 2, 0]))]),
-    ]
-    folded = Chain(scene, links, pairs=[("upper", "fore")]).move([0.3, 0], [1.3, -np.pi], at([100, -50, 20]))
-    expected = (np.pi - np.arcsin(0.5 / np.hypot(5.5, 3)) - np.arctan2(3, 5.5)) / np.pi
-    assert folded.status == Status.HIT
-    assert expected - 1e-6 < folded.fraction_lo <= expected + 1e-12 and expected <= folded.fraction_hi + 1e-12
-    assert (folded.link_names, folded.other_link_names, folded.object) == ("upper", "fore", -1)
-    assert Chain(scene, links).move([0.3, 0], [1.3, -np.pi]).status == Status.CLEAR  # neighbours at a joint
-
-
-def test_a_chain_that_slides_is_a_cast(boxes):
-    scene, mesh = boxes
-    scene.set_motions(np.arange(0, 200, 2), np.random.default_rng(4).uniform(-2, 2, (100, 3)))
-    ways = np.random.default_rng(5).normal(size=(9, 3)) * 6
-    for way in ways:
-        chain = Chain(scene, [Link("body", joint="prismatic", axis=way, meshes=[mesh])])
-        length = np.linalg.norm(way)
-        move, cast = chain.move([0], [length], at([1, 2, 3])), scene.cast(mesh, at([1, 2, 3]), way, mode="reference")
-        assert move.status == cast.status and move.object == cast.object
-        if cast.status == Status.HIT:
-            assert move.fraction_lo - 1e-12 <= cast.fraction <= move.fraction_hi + 1e-12 and move.fraction_hi < 1
-
-
 def test_shapes_broadcast_and_an_index_gives_a_part():
     chain = arm()
     start, end, base = configurations(6, 5), configurations(7, 3), at([[0, 0, 0], [0.1, 0, 0]])

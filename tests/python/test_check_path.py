@@ -1,4 +1,4 @@
-"""The check of a tool's path, against closed forms of the distances to conflicts."""
+"""The check of a tool's path."""
 
 import argparse
 import subprocess
@@ -16,7 +16,6 @@ import check_path  # noqa: E402
 import drop_cutter  # noqa: E402
 
 OPTIONS = argparse.Namespace(diameter=6, corner=1, angle=60, length=25, holder=[10, 25])
-WALL = [((20, 0, 2), (10, 40, 4))]  # from x 15, up to z 4
 
 
 def tool(name: str) -> Cutter:
@@ -35,24 +34,6 @@ def path_of(points, cuts) -> check_path.Path:
 def conflicts(machine, path) -> list[tuple]:
     found = machine.conflicts(path, machine.cast(path))
     return [(conflict.line, conflict.what, conflict.object, round(conflict.after, 9)) for conflict in found]
-
-
-@pytest.mark.parametrize("name", drop_cutter.CUTTERS)
-def test_cutters_meet_the_edge_of_a_fixture_where_their_profiles_say(name):
-    _, profile = drop_cutter.cutter_of(name, OPTIONS)
-    machine = check_path.Machine(tool(name))
-    machine.add_boxes("wall", WALL, check_path.FIXTURE)
-    depths = np.array([0.1, 0.37, 0.6, 1.5, 3.9])  # of the tip below the wall's upper edge
-    low, high = np.zeros(5), np.full(5, profile.radius)  # how far from the axis the cutter reaches below the edge
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = np.where(profile.height(middle) <= depths, (middle, high), (low, middle))
-    points = np.concatenate([[[0, 0, 4 - depth], [30, 0, 4 - depth], [30, 0, 9], [0, 0, 9]] for depth in depths])
-    path = path_of(points, [k % 2 == 0 for k in range(len(points) - 1)])
-    found = [conflict for conflict in machine.conflicts(path, machine.cast(path)) if conflict.line % 4 == 1]
-    assert [(conflict.what, conflict.object, conflict.status) for conflict in found] == [("cutter", "wall", "hit")] * 5
-    np.testing.assert_allclose([conflict.after for conflict in found], 15 - high, atol=1e-9)
-    assert all(conflict.x == pytest.approx(15) and conflict.z <= 4 + 1e-9 for conflict in found)
 
 
 def test_moves_are_stopped_by_what_they_must_not_touch_and_by_nothing_else():

@@ -1,6 +1,8 @@
 // The CPU's search follows its scene, and CpuSweeper keeps its contract.
-#include "cpu_agreement.h"
+#include "radar/cpu_sweeper.h"
 #include "soups.h"
+#include "support/catch.h"
+#include "support/same_bits.h"
 
 using namespace radar;
 using soups::Random;

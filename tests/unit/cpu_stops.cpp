@@ -1,7 +1,8 @@
 // The CPU's search ends soon after its stop is requested.
 #include <thread>
 
-#include "cpu_agreement.h"
+#include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "support/endless.h"
 #include "support/same_bits.h"
 

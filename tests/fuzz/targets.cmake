@@ -36,7 +36,7 @@ function(radar_fuzz name sentence)
 endfunction()
 
 set(fuzzed_scene fuzz/check_answers.cpp fuzz/scene_calls.cpp support/scene_model.cpp)
-radar_fuzz(mesh_file "any bytes are read or refused as OBJ, STL, PLY, OFF, glTF and 3MF files" MUTATIONS 5000 LINK radar_import ZLIB::ZLIB)
+radar_fuzz(mesh_file "any bytes are read or refused as OBJ, STL, PLY, OFF, glTF and 3MF files" MUTATIONS 7000 LINK radar_import ZLIB::ZLIB)
 radar_fuzz(cpu_calls "any calls of the interface keep its contracts, and the CPU's answers are exact" MUTATIONS 3000
   SOURCES ${fuzzed_scene} LINK radar_oracle)
 radar_fuzz(query_file "any bytes are read or refused as a query file, and what is read is answered" MUTATIONS 5000

@@ -147,19 +147,8 @@ void checkSampled(const Result& sampled, const Result& exact, const std::string&
 }
 
 void requireSame(const Answers& found, const Answers& expected) {
-  require(std::ranges::equal(found.results, expected.results, test::sameButTier), "answers differ");
-  require(found.lists.size() == expected.lists.size(), "one lists nothing");
-  for (size_t i = 0; i < found.lists.size(); ++i) {
-    const Listed &ours = found.lists[i], &theirs = expected.lists[i];
-    require(std::ranges::equal(ours.hits, theirs.hits, test::sameButTier), "lists of hits differ");
-    require(ours.overlapping == theirs.overlapping, "lists of overlapping objects differ");
-    require(ours.exit.has_value() == theirs.exit.has_value() && ours.closest.has_value() == theirs.closest.has_value(),
-            "only one has a closest approach or an exit");
-    require(!ours.exit || test::sameButTier(*ours.exit, *theirs.exit), "exits differ");
-    require(!ours.closest || (ours.closest->lo == theirs.closest->lo && ours.closest->hi == theirs.closest->hi &&
-                              test::sameButTier(ours.closest->at, theirs.closest->at)),
-            "closest approaches differ");
-  }
+  const std::string difference = test::differenceOf(found, expected, test::sameButTier);
+  require(difference.empty(), "answers differ: " + difference);
 }
 
 }  // namespace radar::fuzz

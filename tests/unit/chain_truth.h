@@ -15,7 +15,7 @@ namespace radar::test {
 using Real = long double;
 using Place = std::array<Real, 12>;
 
-inline Place placeOf(const Transform& pose) {
+inline Place widened(const Transform& pose) {
   Place out;
   std::ranges::copy(pose.m, out.begin());
   return out;
@@ -34,7 +34,7 @@ inline Place product(const Place& outer, const Place& inner) {
 
 // As the question is stated.
 inline Place jointPlace(const Link& link, Real q) {
-  Place out = placeOf({});
+  Place out = widened({});
   const Real length = std::sqrt(Real(link.axis[0]) * link.axis[0] + Real(link.axis[1]) * link.axis[1] +
                                 Real(link.axis[2]) * link.axis[2]);
   const Real n[3] = {link.axis[0] / length, link.axis[1] / length, link.axis[2] / length};
@@ -62,8 +62,8 @@ class ChainTruth {
     std::vector<std::vector<Shape>> links;
     std::vector<Place> places;
     for (const Link& link : chain_.links) {
-      Place place = product(link.parent == kNone ? placeOf(query_.worldFromBase) : places[link.parent],
-                            placeOf(link.parentFromJoint));
+      Place place = product(link.parent == kNone ? widened(query_.worldFromBase) : places[link.parent],
+                            widened(link.parentFromJoint));
       if (link.joint != JointType::fixed) {
         const Real from = query_.from[link.variable], to = query_.to[link.variable];
         place = product(place, jointPlace(link, from + s * (to - from)));
@@ -71,7 +71,7 @@ class ChainTruth {
       places.push_back(place);
       links.emplace_back();
       for (const LinkMesh& mesh : link.meshes) {
-        links.back().push_back(shapeOf(scene_.meshes[mesh.mesh], product(place, placeOf(mesh.linkFromMesh)), {}));
+        links.back().push_back(shapeOf(scene_.meshes[mesh.mesh], product(place, widened(mesh.linkFromMesh)), {}));
       }
     }
     for (const auto& [a, b] : chain_.pairs) {
@@ -84,7 +84,7 @@ class ChainTruth {
     for (ObjectId id = 0; id < scene_.objects.size(); ++id) {
       const Object& object = scene_.objects[id].object;
       if ((object.mask & query_.mask) == 0 || std::ranges::count(query_.exclude, id) > 0) continue;
-      const Shape other = shapeOf(scene_.meshes[object.mesh], placeOf(object.worldFromMesh), scaled(s, object.motion));
+      const Shape other = shapeOf(scene_.meshes[object.mesh], widened(object.worldFromMesh), scaled(s, object.motion));
       for (const std::vector<Shape>& link : links) {
         for (const Shape& shape : link) {
           if (test::meet(shape, other, query_.clearance, slack)) return true;

@@ -9,25 +9,18 @@
 #include "scene/scene.h"
 #include "support/catch.h"
 #include "support/seeds.h"
+#include "support/world.h"
 #include "unit/chain_truth.h"
 #include "workloads/shapes.h"
 
 using namespace radar;
+using test::add;
+using tools::placedAt;
 using tools::Random;
 
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-MeshId add(Scene& scene, const tools::MeshData& mesh) {
-  return scene.addMesh(mesh.positions, mesh.indices);
-}
-
-Transform at(const Vector& p) {
-  Transform pose;
-  for (int k = 0; k < 3; ++k) pose.m[4 * k + 3] = p[k];
-  return pose;
-}
 
 ChainResult answerOf(const Scene& scene, const Chain& chain, const ChainQuery& query) {
   return ChainSweeper(scene, chain, 1).run({&query, 1})[0];
@@ -50,16 +43,16 @@ TEST_CASE("a forearm folds back onto its own upper arm at the angle that geometr
   const MeshId upper = add(scene, tools::makeBox({10, 1, 1})), finger = add(scene, tools::makeBox({1, 2, 1}));
   Chain chain;
   chain.variables = 2;
-  const LinkMesh meshes[] = {{upper, at({5, 0, 0})}, {finger, at({6, 2, 0})}};
+  const LinkMesh meshes[] = {{upper, placedAt({5, 0, 0})}, {finger, placedAt({6, 2, 0})}};
   chain.links = {{.joint = JointType::revolute, .axis = {0, 0, 1}, .variable = 0, .meshes = {meshes[0]}},
                  {.parent = 0,
-                  .parentFromJoint = at({10, 0, 0}),
+                  .parentFromJoint = placedAt({10, 0, 0}),
                   .joint = JointType::revolute,
                   .axis = {0, 0, -2},
                   .variable = 1,
                   .meshes = {meshes[1]}}};
   const double from[] = {0.3, 0}, to[] = {1.3, -kPi};
-  const ChainQuery query{.from = from, .to = to, .worldFromBase = at({100, -50, 20})};
+  const ChainQuery query{.from = from, .to = to, .worldFromBase = placedAt({100, -50, 20})};
   CHECK(answerOf(scene, chain, query).contact.status == Status::clear);
   chain.pairs = {{0, 1}};
   const ChainResult folded = answerOf(scene, chain, query);
@@ -103,12 +96,12 @@ TEST_CASE("what a link meets only amid its arc, within it or beyond it, is found
     }
     const MeshId bar = add(scene, one), link = add(scene, moved);
     const Vector place = scaled(random.magnitude(-2, 2), random.direction());
-    scene.addObject({.mesh = bar, .worldFromMesh = at(along(place, 1, {isOuter ? inner : outer, 0, 0}))});
+    scene.addObject({.mesh = bar, .worldFromMesh = placedAt(along(place, 1, {isOuter ? inner : outer, 0, 0}))});
     Chain chain;
     chain.variables = 1;
     chain.links = {{.joint = JointType::revolute, .axis = {0, 0, 1}, .variable = 0, .meshes = {{link, {}}}}};
     const double from[] = {-angle / 2}, to[] = {angle / 2};
-    const ChainQuery query{.from = from, .to = to, .worldFromBase = at(place)};
+    const ChainQuery query{.from = from, .to = to, .worldFromBase = placedAt(place)};
     CAPTURE(trial, angle, overlap, isOuter, isPair, place[0]);
     CHECK(answerOf(scene, chain, query).contact.status == Status::hit);
   }
@@ -136,7 +129,7 @@ TEST_CASE("a chain of one joint turns as a turn does, and one of three slides as
     } else {
       asked.turn = Turn{random.direction(), random.uniform(-4, 4), random.inCube(3)};
       for (int k = 0; k < 3; ++k) start.m[4 * k + 3] -= asked.turn->centre[k];
-      chain.links = {{.parentFromJoint = at(asked.turn->centre),
+      chain.links = {{.parentFromJoint = placedAt(asked.turn->centre),
                       .joint = JointType::revolute,
                       .axis = asked.turn->axis,
                       .variable = 0}};
@@ -328,11 +321,11 @@ TEST_CASE("a clearance between links is a length in the world, though poses may 
 TEST_CASE("objects as far away as a scene may have them are clear of a chain") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
-  scene.addObject({.mesh = box, .worldFromMesh = at({0x1p520, 0, 0})});
-  scene.addObject({.mesh = box, .worldFromMesh = at({0, -0x1p800, 0})});
+  scene.addObject({.mesh = box, .worldFromMesh = placedAt({0x1p520, 0, 0})});
+  scene.addObject({.mesh = box, .worldFromMesh = placedAt({0, -0x1p800, 0})});
   Chain chain;
   chain.variables = 1;
-  chain.links = {{.joint = JointType::revolute, .variable = 0, .meshes = {{box, at({3, 0, 0})}}}};
+  chain.links = {{.joint = JointType::revolute, .variable = 0, .meshes = {{box, placedAt({3, 0, 0})}}}};
   const double from[] = {0}, to[] = {1};
   for (const double clearance : {0.0, 1.0}) {
     const ChainQuery query{.from = from, .to = to, .clearance = clearance};
@@ -344,12 +337,12 @@ TEST_CASE("a bracket is as narrow far from the origin of the world as near it") 
   for (const double far : {0.0, 1e6, 1e8}) {
     Scene scene;
     const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
-    scene.addObject({.mesh = box, .worldFromMesh = at({far + 3.25, 0.3, 0.2})});
+    scene.addObject({.mesh = box, .worldFromMesh = placedAt({far + 3.25, 0.3, 0.2})});
     Chain chain;
     chain.variables = 1;
     chain.links = {{.joint = JointType::prismatic, .variable = 0, .meshes = {{box, {}}}}};
     const double from[] = {0}, to[] = {4};
-    const ChainQuery query{.from = from, .to = to, .worldFromBase = at({far, 0, 0}), .tolerance = 1e-9};
+    const ChainQuery query{.from = from, .to = to, .worldFromBase = placedAt({far, 0, 0}), .tolerance = 1e-9};
     const Result found = answerOf(scene, chain, query).contact;
     CAPTURE(far, found.lo, found.hi);
     REQUIRE(found.status == Status::hit);
@@ -362,7 +355,7 @@ TEST_CASE("a bracket is as narrow far from the origin of the world as near it") 
 TEST_CASE("a chain, or a question about one, that says nothing is refused by name") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
-  scene.addObject({.mesh = box, .worldFromMesh = at({9, 9, 9})});
+  scene.addObject({.mesh = box, .worldFromMesh = placedAt({9, 9, 9})});
   Chain good;
   good.variables = 2;
   good.links = {{.joint = JointType::revolute, .variable = 0, .meshes = {{box, {}}}},

@@ -2,36 +2,26 @@
 // contact, which long doubles place.
 #include <cmath>
 
-#include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
+#include "support/answer.h"
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/seeds.h"
+#include "support/world.h"
 #include "unit/turn_truth.h"
 #include "workloads/shapes.h"
 
 using namespace radar;
+using test::add;
+using test::answer;
 using test::turned;
 using test::TurnTruth;
+using tools::placedAt;
 using tools::Random;
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-Result answerOf(const Scene& scene, const Query& query) {
-  return CpuSweeper(scene, 1).run({&query, 1}).results[0];
-}
-
-MeshId add(Scene& scene, const tools::MeshData& mesh) {
-  return scene.addMesh(mesh.positions, mesh.indices);
-}
-
-Transform at(const Vector& p) {
-  Transform pose;
-  for (int k = 0; k < 3; ++k) pose.m[4 * k + 3] = p[k];
-  return pose;
-}
 
 double longestSide(const Scene& scene, const Query& query) {
   const Box box = boxOf(scene.impl().meshes[query.mesh], query.worldFromMesh.m);
@@ -67,10 +57,10 @@ TEST_CASE("a rod that sweeps a post touches it at the angle that geometry says, 
       const MeshId rod = add(scene, tools::makeBox({10 * s, s, s})), post = add(scene, tools::makeBox({s, s, 3 * s}));
       const Vector centre = scaled(size, place);
       // The rod lies along x from its end, the centre; the post's nearest edge is at (-0.5, 6.5).
-      scene.addObject({.mesh = post, .worldFromMesh = at(along(centre, size, {-1, 6, 0}))});
-      Query query{.mesh = rod, .worldFromMesh = at(along(centre, size, {5, 0, 0}))};
+      scene.addObject({.mesh = post, .worldFromMesh = placedAt(along(centre, size, {-1, 6, 0}))});
+      Query query{.mesh = rod, .worldFromMesh = placedAt(along(centre, size, {5, 0, 0}))};
       query.turn = Turn{{0, 0, 7}, kPi, centre};
-      const Result found = answerOf(scene, query);
+      const Result found = answer(scene, query);
       // The rod's upper side is half a size from the axis: its line passes through (-0.5, 5.5) first.
       const double corner = std::atan2(5.5, -0.5), below = std::asin(0.5 / std::hypot(5.5, 0.5));
       const double expected = (corner - below) / kPi;
@@ -82,7 +72,7 @@ TEST_CASE("a rod that sweeps a post touches it at the angle that geometry says, 
       CHECK(found.fraction == found.lo);
       CHECK(found.gap == 0);
       query.turn->angle = -kPi;  // the other way round it comes later, after three quarters
-      CHECK(answerOf(scene, query).status == Status::clear);
+      CHECK(answer(scene, query).status == Status::clear);
     }
   }
 }
@@ -97,29 +87,29 @@ TEST_CASE("what only the middle of an arc reaches is found") {
     const double angle = random.uniform(0.02, 0.5), bulge = angle * angle / 8;
     const Vector place = scaled(random.magnitude(-2, 3), random.direction());
     scene.addObject(
-        {.mesh = post, .worldFromMesh = at(along(place, 1, {1.05 - random.uniform(0.2, 0.8) * bulge, 0, 0}))});
-    Query query{.mesh = rod, .worldFromMesh = at(place)};
+        {.mesh = post, .worldFromMesh = placedAt(along(place, 1, {1.05 - random.uniform(0.2, 0.8) * bulge, 0, 0}))});
+    Query query{.mesh = rod, .worldFromMesh = placedAt(place)};
     const double c = std::cos(angle / 2), s = std::sin(angle / 2);
     query.worldFromMesh.m[0] = query.worldFromMesh.m[5] = c;
     query.worldFromMesh.m[1] = s;
     query.worldFromMesh.m[4] = -s;
     query.turn = Turn{{0, 0, 1}, angle, place};
     CAPTURE(trial, angle, place[0]);
-    CHECK(answerOf(scene, query).status == Status::hit);
+    CHECK(answer(scene, query).status == Status::hit);
   }
 }
 
 TEST_CASE("a box that turns about one of its edges lands on a plane after the angle between them") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({2, 2, 2})), plate = add(scene, tools::makeBox({40, 40, 1}));
-  scene.addObject({.mesh = plate, .worldFromMesh = at({0, 0, -0.5})});
+  scene.addObject({.mesh = plate, .worldFromMesh = placedAt({0, 0, -0.5})});
   for (const double tilt : {1e-4, 0.1, 0.7}) {
     // The edge along y at x = -1 is the axis, a little above the plane; the rest is tilted upwards.
     const double gap = 1e-3, c = std::cos(tilt), s = std::sin(tilt);
     Query query{.mesh = box};
     query.worldFromMesh.m = {c, 0, -s, -1 + c + s * -1, 0, 1, 0, 0, s, 0, c, gap + s + c};
     query.turn = Turn{{0, 1, 0}, 1, {-1, 0, gap}};
-    const Result found = answerOf(scene, query);
+    const Result found = answer(scene, query);
     // The lower edge at the other end, 2 from the axis, comes down to the plane.
     const double expected = tilt + std::asin(gap / 2);
     CAPTURE(tilt, found.lo, found.hi, expected);
@@ -134,16 +124,16 @@ TEST_CASE("what turns on a plane that it does not touch is free, however near it
   for (const double gap : {0.0, 1e-10, 1e-6}) {
     Scene scene;
     const MeshId box = add(scene, tools::makeBox({2, 3, 2})), plate = add(scene, tools::makeBox({40, 40, 2}));
-    scene.addObject({.mesh = plate, .worldFromMesh = at({0, 0, -1})});
-    Query query{.mesh = box, .worldFromMesh = at({1, 2, 1 + gap})};
+    scene.addObject({.mesh = plate, .worldFromMesh = placedAt({0, 0, -1})});
+    Query query{.mesh = box, .worldFromMesh = placedAt({1, 2, 1 + gap})};
     query.turn = Turn{{0, 0, 1}, 20, {3, 0, 0}};
     query.motion = {0.5, 0.25, 0};
-    const Result found = answerOf(scene, query);
+    const Result found = answer(scene, query);
     CAPTURE(gap);
     CHECK(found.status == (gap == 0 ? Status::overlap : Status::clear));
     // It drops below the plane.
     query.motion = {0, 0, -1};
-    const Result landed = answerOf(scene, query);
+    const Result landed = answer(scene, query);
     CHECK(landed.status == (gap == 0 ? Status::overlap : Status::hit));
     if (gap > 0) CHECK(landed.lo <= 1.01 * gap);
     if (gap > 0) CHECK(landed.hi >= 0.99 * gap);
@@ -153,12 +143,12 @@ TEST_CASE("what turns on a plane that it does not touch is free, however near it
 TEST_CASE("ten thousand turns, and a centre a billion sizes away, are answered as few and near ones are") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
-  scene.addObject({.mesh = box, .worldFromMesh = at({0, 0, 3})});
+  scene.addObject({.mesh = box, .worldFromMesh = placedAt({0, 0, 3})});
   // It screws itself upwards: whatever its angle, its upper side arrives when it has risen by 2.
   Query query{.mesh = box};
   query.motion = {0, 0, 4};
   query.turn = Turn{{0, 0, 1}, 0x1p16, {0.25, 0, 0}};
-  const Result screwed = answerOf(scene, query);
+  const Result screwed = answer(scene, query);
   CAPTURE(screwed.lo, screwed.hi);
   CHECK(screwed.status == Status::hit);
   CHECK(screwed.lo <= 0.5);
@@ -167,7 +157,7 @@ TEST_CASE("ten thousand turns, and a centre a billion sizes away, are answered a
   // About an axis so far away it moves all but straight, by 3.
   query.motion.reset();
   query.turn = Turn{{0, 1, 0}, 3e-9, {1e9, 0, 0}};
-  const Result swung = answerOf(scene, query);
+  const Result swung = answer(scene, query);
   CAPTURE(swung.lo, swung.hi);
   CHECK(swung.status == Status::hit);
   CHECK(swung.lo <= 2 / 3.0 + 1e-7);
@@ -221,7 +211,7 @@ TEST_CASE("random sensors that turn meet nothing before lo, and certainly someth
                       random.uniform(-2, 2) * random.magnitude(-3, 1) * (3 / arm), random.inCube(arm * size)};
     if (!random.oneIn(3)) query.motion = random.inCube(3 * size);
     if (random.oneIn(3)) query.clearance = random.uniform(0, 1) * size;
-    const Result found = answerOf(scene, query);
+    const Result found = answer(scene, query);
     if (getsDeep || found.status != Status::undecided) ++statuses[static_cast<size_t>(found.status)];
     const TurnTruth truth(query, scene);
     // Of what doubles keep of places so far from the origin.
@@ -236,7 +226,7 @@ TEST_CASE("random sensors that turn meet nothing before lo, and certainly someth
       Query still = query;
       still.turn.reset();
       still.motion = Vector{};
-      const Result expected = answerOf(scene, still);
+      const Result expected = answer(scene, still);
       REQUIRE(expected.status == Status::overlap);
       CHECK((found.object == expected.object && found.triB == expected.triB && found.triA == expected.triA));
     }
@@ -262,7 +252,7 @@ TEST_CASE("of a turn that is cut into parts, the part that meets first does so a
     Query query{.mesh = torus, .worldFromMesh = tools::makePose(random.rotation(), {1, 1, 1}, random.inCube(5))};
     query.turn = Turn{random.direction(), random.uniform(0.5, 6), random.inCube(3)};
     query.motion = random.inCube(4);
-    const Result whole = answerOf(scene, query);
+    const Result whole = answer(scene, query);
     const int parts = 5;
     for (int part = 0; part < parts; ++part) {
       const double from = double(part) / parts;
@@ -278,7 +268,7 @@ TEST_CASE("of a turn that is cut into parts, the part that meets first does so a
       for (int i = 0; i < 3; ++i) piece.turn->centre[i] += from * (*query.motion)[i];
       piece.turn->angle /= parts;
       for (double& way : *piece.motion) way /= parts;
-      const Result found = answerOf(scene, piece);
+      const Result found = answer(scene, piece);
       if (found.status == Status::clear) continue;
       if (found.status == Status::overlap && part > 0) break;  // the seam is within the bracket
       CAPTURE(trial, part, whole.lo, whole.hi, found.lo, found.hi);

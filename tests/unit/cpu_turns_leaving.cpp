@@ -1,27 +1,22 @@
 // Sensors that turn off what they rest on: boxes against the depth of their interiors, by separating axes.
 #include <cmath>
 
-#include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
+#include "support/answer.h"
 #include "support/catch.h"
 #include "support/seeds.h"
+#include "support/world.h"
 #include "unit/turn_truth.h"
 #include "workloads/generate.h"
 #include "workloads/shapes.h"
 
 using namespace radar;
+using test::add;
+using test::answer;
 using test::turned;
 using tools::Random;
 
 namespace {
-
-MeshId add(Scene& scene, const tools::MeshData& mesh) {
-  return scene.addMesh(mesh.positions, mesh.indices);
-}
-
-Result answerOf(const Scene& scene, const Query& query) {
-  return CpuSweeper(scene, 1).run({&query, 1}).results[0];
-}
 
 Vector column(const Transform& pose, int k) {
   return {pose.m[k], pose.m[4 + k], pose.m[8 + k]};
@@ -97,7 +92,7 @@ TEST_CASE("a box that turns may leave the table that it rests on or slide over i
       Query query{.mesh = box, .worldFromMesh = at({1, 2, 1}), .motion = scaled(size, direction(motion))};
       query.turn = Turn{direction(axis), angle, point(centre)};
       query.ignoreLeaving = true;
-      const Result found = answerOf(scene, query);
+      const Result found = answer(scene, query);
       CAPTURE(trial, size, angle, found.lo, found.hi);
       if (found.status == Status::overlap) CHECK(found.object == under);
       return found.status;
@@ -125,7 +120,7 @@ TEST_CASE("a box does not sink into one of the same footprint, whose sides no ed
     query.worldFromMesh.m[11] = height;
     query.turn = Turn{{0, 0, 1}, angle, {}};
     query.motion = Vector{0, 0, way};
-    return answerOf(scene, query).status;
+    return answer(scene, query).status;
   };
   CHECK(statusOf(2, 1e-9, -0.5) == Status::overlap);
   CHECK(statusOf(2, 1e-9, 0.5) == Status::clear);
@@ -184,7 +179,7 @@ TEST_CASE("random boxes that touch others at the start block each other exactly 
       if (random.oneIn(3)) way = random.inCube(2);
       query.motion = scaled(size, way);
     }
-    const Result found = answerOf(scene, query);
+    const Result found = answer(scene, query);
     ++statuses[static_cast<size_t>(found.status)];
     const Placed start(at({}), sensor);
     const auto depthAt = [&](double s) {

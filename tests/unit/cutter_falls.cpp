@@ -77,7 +77,7 @@ TEST_CASE("cutters fall onto random triangles as far as closed forms say") {
       Corners here;
       for (size_t i = 0; i < 9; ++i) here[i / 3][i % 3] = Real(corners[i]) - (i % 3 < 2 ? at[i % 3] : 0);
       const Real expected = 9 - heightOver(kind, here);
-      const Result result = ask(scene, query);
+      const Result result = answer(scene, query);
       if (result.status == Status::clear) {
         REQUIRE(expected == kNever);
         ++clear;
@@ -130,9 +130,9 @@ TEST_CASE("cutters fall onto a relief, also right above its vertices and edges, 
         }
         top = std::max(top, heightOver(kind, here));
       }
-      const Result result =
-          ask(scene,
-              {.mesh = cutter, .worldFromMesh = tools::placedAt({x, y, 9}), .direction = {0, 0, -1}, .distance = 12});
+      const Result result = answer(
+          scene,
+          {.mesh = cutter, .worldFromMesh = tools::placedAt({x, y, 9}), .direction = {0, 0, -1}, .distance = 12});
       REQUIRE(result.status == Status::hit);
       REQUIRE(result.lo <= 9 - top + 1e-14);
       REQUIRE(result.hi >= 9 - top - 1e-14);
@@ -162,10 +162,10 @@ TEST_CASE("cutters touch level faces, edges along the way, points and segments")
         CAPTURE(kind.name, shape, far);
         Scene scene;
         scene.addObject({scene.addMesh(shape, oneTriangle()), tools::placedAt({far, -far, 2 * far})});
-        const Result result = ask(scene, {.mesh = scene.addCutter(kind.cutter),
-                                          .worldFromMesh = tools::placedAt({far, -far, 9 + 2 * far}),
-                                          .direction = {0, 0, -1},
-                                          .distance = 40});
+        const Result result = answer(scene, {.mesh = scene.addCutter(kind.cutter),
+                                             .worldFromMesh = tools::placedAt({far, -far, 9 + 2 * far}),
+                                             .direction = {0, 0, -1},
+                                             .distance = 40});
         Corners here;
         for (size_t i = 0; i < 9; ++i) here[i / 3][i % 3] = shape[i];
         const Real expected = 9 - heightOver(kind, here);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "radar/cpu_sweeper.h"
 #include "radar/cutters.h"
+#include "support/answer.h"
 #include "support/real_points.h"
 #include "workloads/random.h"
 
@@ -70,10 +70,6 @@ Real whereGreatest(const Function& f, Real from, Real to) {
     }
   }
   return 0.5L * (from + to);
-}
-
-inline Result ask(const Scene& scene, const Query& query) {
-  return CpuSweeper(scene, 1).run({&query, 1}).results[0];
 }
 
 inline std::vector<uint32_t> oneTriangle() {

@@ -71,7 +71,7 @@ TEST_CASE("a plane and a point prove each first contact of a cutter that moves a
       const double far = place % 5 == 0 ? 2 : 30;
       query.worldFromMesh = rigid(random, {far * scale * away[0], far * scale * away[1], far * scale * away[2]});
       for (size_t k = 0; k < 3; ++k) query.direction[k] = aside[k] - 30 * scale * away[k];
-      const Result result = ask(scene, query);
+      const Result result = answer(scene, query);
       Point d{query.direction[0], query.direction[1], query.direction[2]};
       d = 1 / std::sqrt(dot(d, d)) * d;
       const Point way = turnedIntoTool(query.worldFromMesh, d);

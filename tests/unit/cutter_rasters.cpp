@@ -110,7 +110,7 @@ TEST_CASE("cutters on rasters pass plates and boxes by, and only what they touch
       const auto firstWith = [&](Real room) {
         return firstTime([&](Real t) { return depthAt(t, room); }, query.distance);
       };
-      const Result result = ask(scene, query);
+      const Result result = answer(scene, query);
       CAPTURE(result.lo, result.hi, double(firstWith(kRoom)), double(firstWith(0)), double(firstWith(-kRoom)));
       const Real atEnd = depthAt(query.distance, 0);
       const bool isExact = kind.angle == 0 && seed % 3 != 0;
@@ -151,5 +151,5 @@ TEST_CASE("a cutter that stands beside an edge in a plane along its side is clea
   Scene scene;
   scene.addObject({scene.addMesh(std::vector<float>{-2, 2, 3, 0.1f, 2, -2, 0.1f, 4, 3.5f}, oneTriangle())});
   const Query query{.mesh = scene.addCutter(ballCutter(2, 9)), .direction = {0, 0, 1}, .distance = 0.001};
-  CHECK(ask(scene, query).status == Status::clear);
+  CHECK(answer(scene, query).status == Status::clear);
 }

@@ -77,3 +77,11 @@ def fill(scene: cyber_radar.Scene) -> int:
 def boxes() -> tuple[cyber_radar.Scene, int]:
     scene = cyber_radar.Scene(threads=2)
     return scene, fill(scene)
+
+
+@pytest.fixture
+def scene() -> cyber_radar.Scene:
+    """A plate at z = 0."""
+    made = cyber_radar.Scene()
+    made.add(made.add_mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]]))
+    return made

@@ -11,14 +11,6 @@ from conftest import at, numbers, page_data, same_answers
 from cyber_radar import Feature, Status, ball_cutter, bull_nose, cone, flat, taper
 
 
-@pytest.fixture
-def scene() -> cyber_radar.Scene:
-    """A plate at z = 0."""
-    made = cyber_radar.Scene()
-    made.add(made.add_mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]]))
-    return made
-
-
 def fall(scene, tool, place, **options):
     return scene.cast(tool, at(place), [0, 0, -9], **options)
 

@@ -3,20 +3,11 @@
 import pickle
 
 import numpy as np
-import pytest
 
 import cyber_radar
 from conftest import FACES, at, box, page_data, random_poses, same_answers
 from cyber_radar import Feature, Status, ball, capsule, rounded
 from test_arguments import refusal
-
-
-@pytest.fixture
-def scene() -> cyber_radar.Scene:
-    """A plate at z = 0."""
-    made = cyber_radar.Scene()
-    made.add(made.add_mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]]))
-    return made
 
 
 def fall(scene, shape, place, **options):

@@ -7,11 +7,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
-using radar::test::Contains;
-using radar::test::Run;
-using radar::test::runCommand;
-using radar::test::runProgram;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 
@@ -31,26 +27,8 @@ void makeFiles(const ScratchFolder& folder) {
   std::filesystem::create_directory(folder.path() / "d");
 }
 
-std::string contentOf(const ScratchFolder& folder) {
-  std::string all = folder.list();
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
-    if (entry.is_regular_file()) all += folder.read(entry.path().filename());
-  }
-  return all;
-}
-
-void requireRefused(const ScratchFolder& folder, const std::string& command, const std::string& words) {
-  CAPTURE(command);
-  const std::string before = contentOf(folder);
-  const Run run = runCommand(folder, command);
-  CHECK(run.status == 2);
-  CHECK(run.out.empty());
-  CHECK_THAT(run.err, Contains(words));
-  CHECK(contentOf(folder) == before);
-}
-
 const std::string kProgram = "'" RADAR_PROGRAM "' ";
-const std::string kQuery = kProgram + "query q.json --mode reference ";
+const std::string kQuery = "query q.json --mode reference ";
 
 }  // namespace
 
@@ -59,22 +37,21 @@ TEST_CASE("an output that is an input, by whatever name, is refused before any w
   makeFiles(folder);
   for (const char* option : {"--out", "--stats"}) {
     for (const char* file : {"q.json", "./d/../q.json", "link", "a.obj", "second-name", "a.npy", "a.f32"}) {
-      requireRefused(folder, kQuery + option + " " + file,
-                     std::string(option) + ": " + file + ": expected another file than those that are read, got ");
+      checkRefused(folder, kQuery + option + " " + file,
+                   std::string(option) + ": " + file + ": expected another file than those that are read, got ");
     }
   }
-  requireRefused(folder, kProgram + "query - --out q.json <q.json", "--out: q.json: expected another file than");
+  checkRefused(folder, "query - --out q.json <q.json", "--out: q.json: expected another file than");
   folder.write("a.partial", folder.read("q.json"));
-  requireRefused(folder, kProgram + "query a.partial --out a", "--out: a.partial: expected another file than");
-  REQUIRE(runCommand(folder, kQuery + "--shard 0/1 --out part").status == 0);
-  requireRefused(folder, kProgram + "merge part --out ./part", "--out: ./part: expected another file than");
+  checkRefused(folder, "query a.partial --out a", "--out: a.partial: expected another file than");
+  REQUIRE(runProgram(folder, kQuery + "--shard 0/1 --out part").status == 0);
+  checkRefused(folder, "merge part --out ./part", "--out: ./part: expected another file than");
   REQUIRE(runCommand(folder, "cp q.json a.* d; cd d; cp q.json scopes.json; cp q.json trace.json").status == 0);
-  requireRefused(folder, kProgram + "scopes d/scopes.json --query p --out d",
-                 "--out: d/scopes.json: expected another file than");
-  requireRefused(folder, kProgram + "scale d/trace.json --out d", "--out: d/trace.json: expected another file than");
+  checkRefused(folder, "scopes d/scopes.json --query p --out d", "--out: d/scopes.json: expected another file than");
+  checkRefused(folder, "scale d/trace.json --out d", "--out: d/trace.json: expected another file than");
   REQUIRE(runCommand(folder, kProgram + "workload meshes --mesh a.obj --objects 2 --sensors 1 --out w").status == 0);
-  requireRefused(folder, kProgram + "workload meshes --mesh a.obj w/mesh-0.ply --out w",
-                 "--out: w/mesh-0.ply: expected another file than");
+  checkRefused(folder, "workload meshes --mesh a.obj w/mesh-0.ply --out w",
+               "--out: w/mesh-0.ply: expected another file than");
 }
 
 TEST_CASE("two outputs in one file are refused, and links are written through") {
@@ -82,35 +59,35 @@ TEST_CASE("two outputs in one file are refused, and links are written through") 
   makeFiles(folder);
   for (const char* files :
        {"--out a --stats ./a", "--out a --stats a.partial", "--out ahead --stats d/../nothing-yet"}) {
-    requireRefused(folder, kQuery + files, "expected a file of its own, got that of --out");
+    checkRefused(folder, kQuery + files, "expected a file of its own, got that of --out");
   }
-  REQUIRE(runCommand(folder, kQuery + "--out ahead --stats /dev/null").status == 0);
+  REQUIRE(runProgram(folder, kQuery + "--out ahead --stats /dev/null").status == 0);
   CHECK(std::filesystem::is_symlink(folder.path() / "ahead"));
-  CHECK(folder.read("nothing-yet") == runCommand(folder, kQuery).out);
+  CHECK(folder.read("nothing-yet") == runProgram(folder, kQuery).out);
 }
 
 TEST_CASE("devices and pipes get their bytes at once") {
   const ScratchFolder folder;
   makeFiles(folder);
-  const std::string answers = runCommand(folder, kQuery).out;
+  const std::string answers = runProgram(folder, kQuery).out;
   REQUIRE(mkfifo((folder.path() / "pipe").c_str(), 0600) == 0);
   const auto readPipe = [&](const std::string& command) {
-    const Run run = runCommand(folder, "cat pipe & " + command + " || echo failed >pipe; wait $!");
+    const Run run = runCommand(folder, "cat pipe & " + kProgram + command + " || echo failed >pipe; wait $!");
     INFO(command + "\n" + run.err);
     return run.out;
   };
   CHECK(readPipe(kQuery + "--out pipe") == answers);
   CHECK_THAT(readPipe(kQuery + "--stats pipe --out a"), Contains("\"queries\": 1,"));
-  REQUIRE(runCommand(folder, kQuery + "--shard 0/1 --out part").status == 0);
+  REQUIRE(runProgram(folder, kQuery + "--shard 0/1 --out part").status == 0);
   CHECK(readPipe(kQuery + "--shard 0/1 --out pipe") == folder.read("part"));
-  CHECK(readPipe(kProgram + "merge part --out pipe") == answers);
+  CHECK(readPipe("merge part --out pipe") == answers);
   CHECK(std::filesystem::is_fifo(folder.path() / "pipe"));
-  CHECK(runCommand(folder, kQuery + "--out /dev/null --stats /dev/null").status == 0);
-  CHECK(runCommand(folder, kQuery + "--out /dev/stdout | cat").out == answers);
-  CHECK_THAT(runCommand(folder, kQuery + "--out /dev/full").err,
+  CHECK(runProgram(folder, kQuery + "--out /dev/null --stats /dev/null").status == 0);
+  CHECK(runProgram(folder, kQuery + "--out /dev/stdout | cat").out == answers);
+  CHECK_THAT(runProgram(folder, kQuery + "--out /dev/full").err,
              Contains("/dev/full: expected a file to write to, got No space"));
-  requireRefused(folder, kQuery + "--out /dev/null --resume",
-                 "--resume: /dev/null: expected a file, got a device or a pipe");
+  checkRefused(folder, kQuery + "--out /dev/null --resume",
+               "--resume: /dev/null: expected a file, got a device or a pipe");
 }
 
 TEST_CASE("while a run writes its file, no other run does") {
@@ -133,14 +110,14 @@ TEST_CASE("a file or link that waits where a run writes is not followed, emptied
   // A file of somebody else's, with and without the end of a line.
   for (const std::string text : {"precious", "precious\n", "{\"format\": \"mine\"}\n"}) {
     folder.write("a.partial", text);
-    requireRefused(folder, kQuery + "--out a", "a.partial: line 1: expected the first line of a part file");
-    requireRefused(folder, kQuery + "--out a --resume", "a.partial: line 1: expected the first line of a part file");
+    checkRefused(folder, kQuery + "--out a", "a.partial: line 1: expected the first line of a part file");
+    checkRefused(folder, kQuery + "--out a --resume", "a.partial: line 1: expected the first line of a part file");
     folder.write("part", text);
-    requireRefused(folder, kQuery + "--out part --shard 0/1 --resume", "part: line 1: expected the first line");
+    checkRefused(folder, kQuery + "--out part --shard 0/1 --resume", "part: line 1: expected the first line");
   }
   std::filesystem::remove(folder.path() / "a.partial");
   std::filesystem::create_symlink("part", folder.path() / "a.partial");
-  requireRefused(folder, kQuery + "--out a --resume", "a.partial: expected a file to write to, got a symbolic link");
+  checkRefused(folder, kQuery + "--out a --resume", "a.partial: expected a file to write to, got a symbolic link");
   std::filesystem::remove(folder.path() / "a.partial");
   // exec: the program has the shell's number.
   const Run run = runCommand(folder, "sh -c 'ln -s part stats.unfinished-$$; exec " + std::string(RADAR_PROGRAM) +

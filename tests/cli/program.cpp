@@ -28,12 +28,12 @@ Run runLab(const ScratchFolder& folder, const std::string& arguments, const std:
 void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words,
                   decltype(runProgram)& run) {
   CAPTURE(arguments);
-  const std::string before = folder.list();
+  const std::string before = folder.contents();
   const Run refused = run(folder, arguments, "");
   CHECK(refused.status == 2);
   CHECK(refused.out.empty());
   CHECK_THAT(refused.err, Contains(words));
-  CHECK(folder.list() == before);
+  CHECK(folder.contents() == before);
 }
 
 }  // namespace radar::test

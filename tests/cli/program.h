@@ -22,7 +22,7 @@ Run runProgram(const ScratchFolder& folder, const std::string& arguments, const 
 Run runLab(const ScratchFolder& folder, const std::string& arguments, const std::string& environment = "");
 
 /// Checks that `cyber-radar arguments`, or what `run` runs, ends with status 2, prints nothing but an error that
-/// contains `words`, and neither makes nor removes a file in `folder`.
+/// contains `words`, and neither makes, removes nor changes a file in `folder`.
 void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words,
                   decltype(runProgram)& run = runProgram);
 

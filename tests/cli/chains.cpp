@@ -7,14 +7,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
-using radar::test::checkRefused;
-using radar::test::Contains;
-using radar::test::linesOf;
-using radar::test::pageData;
-using radar::test::Run;
-using radar::test::runLab;
-using radar::test::runProgram;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 

@@ -7,13 +7,7 @@
 #include "cyber_radar/progress.h"
 #include "support/catch.h"
 
-using radar::test::checkRefused;
-using radar::test::Contains;
-using radar::test::Run;
-using radar::test::runCommand;
-using radar::test::runProgram;
-using radar::test::ScratchFolder;
-using radar::test::StartsWith;
+using namespace radar::test;
 
 TEST_CASE("a word that is no command or option is named, with the nearest that is one") {
   const ScratchFolder folder;

@@ -6,10 +6,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
-using radar::test::Contains;
-using radar::test::Run;
-using radar::test::runProgram;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 TEST_CASE("devices lists the devices with their numbers") {
   const ScratchFolder folder;

@@ -10,12 +10,7 @@
 #include "cyber_radar/line_input.h"
 #include "support/catch.h"
 
-using radar::test::checkRefused;
-using radar::test::Contains;
-using radar::test::Run;
-using radar::test::runCommand;
-using radar::test::runProgram;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 using radar::tools::LineInput;
 
 namespace {

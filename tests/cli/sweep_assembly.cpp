@@ -4,11 +4,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
-using radar::test::checkRefused;
-using radar::test::Contains;
-using radar::test::Run;
-using radar::test::runProgram;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 

@@ -10,10 +10,7 @@
 namespace {
 
 using namespace radar;
-using test::at;
-using test::checkSame;
-using test::Renderer;
-using test::Row;
+using namespace test;
 
 /// Scenes of all families in turn. Two frames are in flight, each with a recorder of its own.
 struct FamilyFrames {

@@ -23,10 +23,7 @@
 namespace {
 
 using namespace radar;
-using test::boundsOf;
-using test::kRoom;
-using test::OnDevice;
-using test::OnDeviceScene;
+using namespace test;
 
 /// The vertices and nodes of a deformed mesh, read back from the device.
 struct DeformedCopy {

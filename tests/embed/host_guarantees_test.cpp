@@ -17,11 +17,7 @@
 namespace {
 
 using namespace radar;
-using test::at;
-using test::execute;
-using test::HostFrame;
-using test::isRefused;
-using test::kRoom;
+using namespace test;
 
 /// A wall at z = 5 that a host may deform and move, and a sensor that moves towards it.
 struct Wall {

@@ -14,13 +14,7 @@
 namespace {
 
 using namespace radar;
-using test::execute;
-using test::hostQueryOf;
-using test::kRoom;
-using test::OnDevice;
-using test::queryOf;
-using test::Row;
-using test::Written;
+using namespace test;
 
 /// What became of written queries, and how many of them are out of range only for the shader.
 struct Tally : fuzz::Outcomes {

@@ -8,9 +8,7 @@
 namespace {
 
 using namespace radar;
-using test::at;
-using test::execute;
-using test::kRoom;
+using namespace test;
 
 /// A unit box at each place, of which a host moves the first.
 struct Boxes {

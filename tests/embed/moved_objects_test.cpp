@@ -11,11 +11,7 @@
 namespace {
 
 using namespace radar;
-using test::always;
-using test::kRoom;
-using test::MovedWorld;
-using test::never;
-using test::Scales;
+using namespace test;
 
 /// Every answer is given, and not less than one in so many is a hit.
 void checkAllAnswered(const fuzz::Outcomes& outcomes, size_t oneIn) {

@@ -10,12 +10,7 @@
 namespace {
 
 using namespace radar;
-using test::always;
-using test::faultOf;
-using test::never;
-using test::ObjectNodes;
-using test::OnDeviceScene;
-using test::testsOf;
+using namespace test;
 
 constexpr uint32_t kMany = 1u << 20;  // searches, for which it pays to sort anything
 

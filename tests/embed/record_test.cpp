@@ -6,9 +6,7 @@
 #include "support/small_scenes.h"
 
 using namespace radar;
-using test::kRoom;
-using test::Renderer;
-using test::Row;
+using namespace test;
 
 TEST_CASE("recorded answers equal a sweeper's, on the device and read back", "[subgroups]") {
   Scene scene;

@@ -17,14 +17,7 @@
 namespace {
 
 using namespace radar;
-using test::Attempt;
-using test::attempt;
-using test::Contains;
-using test::failEach;
-using test::Of;
-using test::sameBits;
-using test::sameContacts;
-using test::VulkanFault;
+using namespace test;
 
 // Each answer is the expected one, or invalid with a reason that names the result; returns how many are.
 size_t checkAnswers(const Answers& found, const Answers& expected, VkResult result) {

@@ -17,12 +17,7 @@
 namespace {
 
 using namespace radar;
-using test::Attempt;
-using test::attempt;
-using test::failEach;
-using test::Of;
-using test::sameBits;
-using test::sameContacts;
+using namespace test;
 
 // What a scene holds, for comparison.
 Answers answersOf(const Scene& scene) {

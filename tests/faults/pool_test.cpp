@@ -12,11 +12,7 @@
 namespace {
 
 using namespace radar;
-using test::Contains;
-using test::kOnDevice;
-using test::sameBits;
-using test::twoDevices;
-using test::VulkanFault;
+using namespace test;
 
 struct Asked {
   Asked() {

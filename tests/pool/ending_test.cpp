@@ -15,9 +15,7 @@
 #include "support/test_device.h"
 
 using namespace radar;
-using test::Boxes;
-using test::differences;
-using test::twoDevices;
+using namespace test;
 
 namespace {
 

@@ -8,9 +8,7 @@
 #include "support/catch.h"
 
 using namespace radar;
-using test::Boxes;
-using test::differences;
-using test::twoDevices;
+using namespace test;
 
 namespace {
 

@@ -2,11 +2,7 @@
 #include "mesh_texts.h"
 
 using namespace radar::tools;
-using radar::test::archiveOf;
-using radar::test::Contains;
-using radar::test::readWhole;
-using radar::test::refusalOf;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 

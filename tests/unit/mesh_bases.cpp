@@ -7,11 +7,8 @@
 #include "workloads/random.h"
 
 using namespace radar::tools;
+using namespace radar::test;
 using radar::Transform;
-using radar::test::Contains;
-using radar::test::readWhole;
-using radar::test::refusalOf;
-using radar::test::ScratchFolder;
 
 namespace {
 

@@ -6,10 +6,7 @@
 #include "workloads/random.h"
 
 using namespace radar::tools;
-using radar::test::Contains;
-using radar::test::readWhole;
-using radar::test::refusalOf;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 

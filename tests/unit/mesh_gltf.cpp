@@ -6,12 +6,8 @@
 #include "workloads/random.h"
 
 using namespace radar::tools;
+using namespace radar::test;
 using nlohmann::json;
-using radar::test::append;
-using radar::test::Contains;
-using radar::test::readWhole;
-using radar::test::refusalOf;
-using radar::test::ScratchFolder;
 
 namespace {
 

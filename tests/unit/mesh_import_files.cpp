@@ -5,14 +5,7 @@
 #include "mesh_texts.h"
 
 using namespace radar::tools;
-using radar::test::append;
-using radar::test::Contains;
-using radar::test::cornerBytes;
-using radar::test::gltf;
-using radar::test::plyHeader;
-using radar::test::readWhole;
-using radar::test::refusalOf;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 

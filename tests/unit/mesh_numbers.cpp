@@ -11,10 +11,7 @@
 #include "workloads/random.h"
 
 using namespace radar::tools;
-using radar::test::append;
-using radar::test::plyHeader;
-using radar::test::readWhole;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 

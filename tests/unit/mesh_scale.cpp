@@ -5,10 +5,8 @@
 #include "mesh_texts.h"
 
 using namespace radar::tools;
+using namespace radar::test;
 using radar::transformPoint;
-using radar::test::Contains;
-using radar::test::gltf;
-using radar::test::ScratchFolder;
 
 namespace {
 

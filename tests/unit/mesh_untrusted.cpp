@@ -8,12 +8,7 @@
 #include "mesh_texts.h"
 
 using namespace radar::tools;
-using radar::test::Contains;
-using radar::test::cornerBytes;
-using radar::test::gltf;
-using radar::test::readWhole;
-using radar::test::refusalOf;
-using radar::test::ScratchFolder;
+using namespace radar::test;
 
 namespace {
 

@@ -8,6 +8,19 @@
 
 namespace radar::test {
 
+namespace {
+
+/// The names of the files, and what is in them.
+std::string contentOf(const ScratchFolder& folder) {
+  std::string all = folder.list();
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    if (entry.is_regular_file()) all += folder.read(entry.path().filename());
+  }
+  return all;
+}
+
+}  // namespace
+
 Run runCommand(const ScratchFolder& folder, const std::string& command) {
   const ScratchFolder output;
   const std::string out = (output.path() / "out").string(), err = (output.path() / "err").string();
@@ -28,12 +41,12 @@ Run runLab(const ScratchFolder& folder, const std::string& arguments, const std:
 void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words,
                   decltype(runProgram)& run) {
   CAPTURE(arguments);
-  const std::string before = folder.contents();
+  const std::string before = contentOf(folder);
   const Run refused = run(folder, arguments, "");
   CHECK(refused.status == 2);
   CHECK(refused.out.empty());
   CHECK_THAT(refused.err, Contains(words));
-  CHECK(folder.contents() == before);
+  CHECK(contentOf(folder) == before);
 }
 
 }  // namespace radar::test

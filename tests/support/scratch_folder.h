@@ -40,14 +40,6 @@ class ScratchFolder {
     for (const std::string& name : sorted) names += (names.empty() ? "" : " ") + name;
     return names;
   }
-  /// These names, and what is in the files among them.
-  std::string contents() const {
-    std::string all = list();
-    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
-      if (entry.is_regular_file()) all += read(entry.path().filename());
-    }
-    return all;
-  }
 
  private:
   std::filesystem::path path_;

@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from conftest import box, random_poses, write_obj
+from conftest import random_poses, write_obj
 
 STATUS = ["hit", "clear", "overlap", "undecided", "invalid"]
 TIER = ["select", "sampled", "contact", "reference"]
@@ -64,6 +64,17 @@ def some_arrays(count: int) -> dict[str, np.ndarray]:
     }
 
 
+def chosen(count: int, *names: str) -> dict[str, np.ndarray]:
+    arrays = some_arrays(count)
+    return {name: arrays[name] for name in names}
+
+
+def change(name: str, value, arrays=None):
+    """Arrays with one of them replaced, or left out."""
+    arrays = arrays or chosen(20, "mesh", "pose", "dir", "D")
+    return {key: array for key, array in (arrays | {name: value}).items() if array is not None}
+
+
 def save(file, arrays: dict[str, np.ndarray]) -> None:
     """As one array, with a column for each."""
     rows = np.zeros(len(next(iter(arrays.values()))), [(name, a.dtype, a.shape[1:]) for name, a in arrays.items()])
@@ -104,7 +115,7 @@ def test_arrays_are_answered_as_the_same_queries_in_json(tmp_path):
     save(tmp_path / "q.npy", arrays)
     write_world(tmp_path, queries_file="q.npy")
     assert answer(tmp_path) == expected
-    arrays = {name: arrays[name] for name in ("mesh", "pose", "dir", "D")} | {"hits": np.arange(500) % 3}
+    arrays = chosen(500, "mesh", "pose", "dir", "D") | {"hits": np.arange(500) % 3}
     save(tmp_path / "q.npy", arrays)
     listed = answer(tmp_path)
     write_world(tmp_path, queries=as_queries(arrays))
@@ -132,7 +143,7 @@ def turn_arrays(count: int) -> dict[str, np.ndarray]:
 
 
 def test_turns_are_arrays_beside_motions_or_alone(tmp_path):
-    places = {name: array for name, array in some_arrays(100).items() if name in ("mesh", "pose", "tolerance")}
+    places = chosen(100, "mesh", "pose", "tolerance")
     turns = turn_arrays(100)
     some_turns = {**turns, "turn_angle": np.where(np.arange(100) % 3 == 0, np.nan, turns["turn_angle"])}
     for queries in (places | turns, places | some_turns | {"motion": some_arrays(100)["dir"]}):
@@ -165,12 +176,7 @@ def test_turns_are_arrays_beside_motions_or_alone(tmp_path):
     ],
 )  # fmt: skip
 def test_bad_columns_of_turns_are_refused_by_name_and_index(tmp_path, name, value, words):
-    arrays = {key: array for key, array in some_arrays(9).items() if key in ("mesh", "pose")} | turn_arrays(9)
-    if value is None:
-        del arrays[name]
-    else:
-        arrays[name] = value
-    save(tmp_path / "q.npy", arrays)
+    save(tmp_path / "q.npy", change(name, value, chosen(9, "mesh", "pose") | turn_arrays(9)))
     write_world(tmp_path, queries_file="q.npy")
     assert words in refusal(tmp_path)
 
@@ -253,16 +259,6 @@ def test_numpy_reads_what_workload_writes(tmp_path):
         assert done.returncode == 0, done.stderr
         found.append([json.loads(line) for line in done.stdout.splitlines()])
     assert [{**line, "id": ""} for line in found[0]] == [{**line, "id": ""} for line in found[1]]
-
-
-def change(name: str, value):
-    """Arrays with one of them replaced, or left out."""
-    arrays = {key: value for key, value in some_arrays(20).items() if key in ("mesh", "pose", "dir", "D")}
-    if value is None:
-        del arrays[name]
-    else:
-        arrays[name] = value
-    return arrays
 
 
 def with_value(name: str, index, value) -> np.ndarray:

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "math/rounding.h"
-#include "scene/node_vector.h"
+#include "scene/large_vector.h"
 
 namespace radar {
 

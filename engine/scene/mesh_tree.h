@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "scene/node_vector.h"
+#include "scene/large_vector.h"
 #include "shaders/shared/interop.h"
 
 namespace radar {

@@ -9,7 +9,7 @@
 #include "math/rounding.h"
 #include "radar/scene.h"
 #include "scene/changed_pages.h"
-#include "scene/node_vector.h"
+#include "scene/large_vector.h"
 #include "shaders/shared/interop.h"
 
 namespace radar {

@@ -15,6 +15,7 @@
 #include "radar/answers.h"
 #include "radar/query.h"
 #include "scene/changed_pages.h"
+#include "scene/large_vector.h"
 #include "scene/mesh.h"
 #include "scene/object_tree.h"
 
@@ -31,7 +32,7 @@ struct Scene::Impl {
   /// Unique. A Scene may be moved into another's place, and versions of different scenes are not comparable.
   uint64_t identity;
   std::vector<Mesh> meshes;
-  std::vector<ObjectSlot> objects;
+  LargeVector<ObjectSlot> objects;
   FreeIds freeMeshes, freeObjects;  ///< the least is used next
   /// Increase with every change of their kind; a reader that has seen the current value is up to date.
   uint64_t meshVersion = 0;

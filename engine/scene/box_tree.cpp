@@ -94,15 +94,11 @@ class Binning {
 // The items of each bin along an axis.
 class Bins {
  public:
+  Bins() { std::fill_n(bins_, kBins, kNothing); }
   void add(uint32_t bin, const Item& item) {
-    if ((used_ >> bin & 1) == 0) {
-      bins_[bin] = item.extent();
-      counts_[bin] = 1;
-      used_ |= 1u << bin;
-    } else {
-      bins_[bin].add(item.extent());
-      ++counts_[bin];
-    }
+    bins_[bin].add(item.extent());
+    ++counts_[bin];
+    used_ |= 1u << bin;
   }
 
   // The cut with the least sum of (area times number of items) over both sides, if that is below `least`.
@@ -137,7 +133,7 @@ class Bins {
   }
 
   Growing bins_[kBins];
-  uint32_t counts_[kBins];
+  uint32_t counts_[kBins] = {};
   uint32_t used_ = 0;  // one bit each
 };
 

@@ -13,6 +13,7 @@
 #include "support/small_scenes.h"
 #include "sweep/sweeper.h"
 #include "workloads/generate.h"
+#include "workloads/shapes.h"
 
 namespace {
 
@@ -102,6 +103,40 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
     checkSame();
   }
   CHECK(failed > 30);
+}
+
+TEST_CASE(
+    "whichever allocation fails while the tree of a deformed mesh is built anew, the mesh has one of its shapes") {
+  const tools::MeshData torus = tools::makeTorus(3, 1, 40, 30), box = tools::makeBox({1, 1, 1});
+  // Every vertex goes to the place of another, so that the tree becomes bad.
+  std::vector<float> scrambled;
+  for (size_t i = 0, count = torus.vertexCount(); i < count; ++i) {
+    const auto from = torus.positions.begin() + static_cast<ptrdiff_t>(3 * (487 * i % count));
+    scrambled.insert(scrambled.end(), from, from + 3);
+  }
+  const std::vector<Query> queries{
+      {.mesh = 1, .worldFromMesh = test::at(-9, 3, 0), .direction = {1, 0, 0}, .distance = 20},
+      {.mesh = 1, .worldFromMesh = test::at(0, 0, 9), .direction = {0, 0, -1}, .distance = 20}};
+  const auto make = [&](const std::vector<float>& positions) {
+    Scene scene;
+    scene.addMesh(positions, torus.indices);
+    test::addMesh(scene, box);
+    scene.addObject({.mesh = 0});
+    return scene;
+  };
+  const auto answer = [&](const Scene& scene) { return CpuSweeper(scene, 1).run(queries); };
+  const Answers before = answer(make(torus.positions)), after = answer(make(scrambled));
+  REQUIRE_FALSE(sameBits(before, after));
+  int64_t threw = 0, kept = 0;
+  failEach([&](int64_t n) {
+    Scene scene = make(torus.positions);
+    const Attempt made = attempt(Of::host, n, [&] { scene.setPositions(0, scrambled); });
+    (made.threw ? threw : kept) += made.failed ? 1 : 0;
+    CHECK(sameBits(answer(scene), made.threw ? before : after));
+    return made;
+  });
+  CHECK(threw > 3);
+  CHECK(kept > 3);
 }
 
 TEST_CASE("whichever allocation of a batch fails, the same sweeper then answers it with the same bits") {

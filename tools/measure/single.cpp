@@ -75,29 +75,33 @@ void castOnThreads(Extent extent, Json& report) {
     threads.push_back(count);
     sweepers.emplace_back(scene, count);
   }
-  for (const uint32_t size : sizes) {
-    // Of small batches many.
-    const std::span<const Query> queries = std::span(all).first(std::max(size, sizes.back() / 16));
-    std::vector<std::vector<Lap>> laps(sweepers.size());
-    Answers answers;
-    const uint32_t passes = isFull ? 9 : 1;
-    inTurns({.least = passes, .most = passes}, sweepers.size(), [&](size_t s, bool counts) {
-      const Lap lap = lapOf([&] {
-        for (size_t at = 0; at < queries.size(); at += size) sweepers[s].run(queries.subspan(at, size), answers);
-      });
-      if (counts) laps[s].push_back(lap);
+  // Of small batches many.
+  const auto queriesFor = [&](uint32_t size) { return std::span(all).first(std::max(size, sizes.back() / 16)); };
+  const size_t ways = sweepers.size();
+  std::vector<std::vector<Lap>> laps(sizes.size() * ways);
+  Answers answers;
+  const uint32_t passes = isFull ? 9 : 1;
+  inTurns({.least = passes, .most = passes}, laps.size(), [&](size_t turn, bool counts) {
+    const uint32_t size = sizes[turn / ways];
+    const std::span<const Query> queries = queriesFor(size);
+    const Lap lap = lapOf([&] {
+      for (size_t at = 0; at < queries.size(); at += size)
+        sweepers[turn % ways].run(queries.subspan(at, size), answers);
     });
-    const auto least = [&](size_t s, double Lap::*clock) {
-      return 1e6 * std::ranges::min(secondsOf(laps[s], clock)) / static_cast<double>(queries.size());
+    if (counts) laps[turn].push_back(lap);
+  });
+  for (size_t turn = 0; turn < laps.size(); ++turn) {
+    const uint32_t size = sizes[turn / ways];
+    const auto least = [&](size_t which, double Lap::*clock) {
+      return 1e6 * std::ranges::min(secondsOf(laps[which], clock)) / static_cast<double>(queriesFor(size).size());
     };
-    for (size_t s = 0; s < sweepers.size(); ++s) {
-      partOf(report, "threads", "Section single, microseconds a query of a batch")["rows"].push_back(
-          {{"batch", size},
-           {"threads", threads[s]},
-           {"us", least(s, &Lap::wall)},
-           {"cpu_us", least(s, &Lap::process)},
-           {"efficiency", least(0, &Lap::wall) / least(s, &Lap::wall) / threads[s]}});
-    }
+    const double us = least(turn, &Lap::wall);
+    partOf(report, "threads", "Section single, microseconds a query of a batch")["rows"].push_back(
+        {{"batch", size},
+         {"threads", threads[turn % ways]},
+         {"us", us},
+         {"cpu_us", least(turn, &Lap::process)},
+         {"efficiency", least(turn - turn % ways, &Lap::wall) / us / threads[turn % ways]}});
   }
 }
 

@@ -1,16 +1,16 @@
 #include "faults/scenario.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "embed/execute.h"
 #include "support/same_bits.h"
+#include "support/world.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
 
 namespace radar::test {
 
 namespace {
+
+using tools::operator-;
 
 tools::Workload soups(uint32_t sensors) {
   return tools::makeWorkload(tools::Soups{.objects = 8, .sensors = sensors, .triangles = 8, .seed = 71});
@@ -22,21 +22,9 @@ Query aimed(const tools::Workload& workload, size_t i) {
   query.resolution = 16;
   const std::vector<tools::Instance>& objects = workload.scenes[0].instances;
   const Transform& target = objects[i % objects.size()].worldFromMesh;
-  double squares = 0;
-  for (size_t k = 0; k < 3; ++k) {
-    query.direction[k] = target.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3];
-    squares += query.direction[k] * query.direction[k];
-  }
-  query.distance = std::sqrt(squares);
+  query.direction = placeOf(target) - placeOf(query.worldFromMesh);
+  query.distance = tools::lengthOf(query.direction);
   return query;
-}
-
-template <class Same>
-bool same(const Answers& p, const Answers& q, const Same& isSame) {
-  const auto sameLists = [&](const Listed& a, const Listed& b) {
-    return std::ranges::equal(a.hits, b.hits, isSame) && a.overlapping == b.overlapping;
-  };
-  return std::ranges::equal(p.results, q.results, isSame) && std::ranges::equal(p.lists, q.lists, sameLists);
 }
 
 }  // namespace
@@ -97,11 +85,11 @@ std::vector<Query> sampledQueries(uint32_t count) {
 }
 
 bool sameBits(const Answers& p, const Answers& q) {
-  return same(p, q, [](const Result& a, const Result& b) { return sameBits(a, b); });
+  return differenceOf(p, q).empty();
 }
 
 bool sameContacts(const Answers& p, const Answers& q) {
-  return same(p, q, sameButTier);
+  return differenceOf(p, q, sameButTier).empty();
 }
 
 }  // namespace radar::test

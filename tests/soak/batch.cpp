@@ -1,6 +1,5 @@
 #include "soak/batch.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
@@ -11,20 +10,7 @@
 
 namespace radar::soak {
 
-namespace {
-
 using fuzz::require;
-
-std::string inWords(std::span<const Result> list) {
-  std::string words = " (";
-  for (const Result& entry : list) {
-    words += std::to_string(static_cast<uint32_t>(entry.status)) + " object " + std::to_string(entry.object) + " at " +
-             std::to_string(entry.t) + ", ";
-  }
-  return words + ")";
-}
-
-}  // namespace
 
 void measured(Who who, Tally& tally, const std::function<void()>& part) {
   using Clock = std::chrono::steady_clock;
@@ -61,9 +47,8 @@ void checkBatch(const Batch& batch, const Answers& found, const std::string& all
     }
     if (!test::sameButTier(result, exact)) fail("another answer");
     const Listed &ours = test::listedBy(found, i), &theirs = test::listedBy(batch.exact, i);
-    if (!std::ranges::equal(ours.hits, theirs.hits, test::sameButTier)) {
-      fail("another list of hits" + inWords(ours.hits) + " instead of" + inWords(theirs.hits));
-    }
+    const std::string difference = test::differenceOf(ours.hits, theirs.hits, test::sameButTier);
+    if (!difference.empty()) fail("another list of hits: " + difference);
     if (ours.overlapping != theirs.overlapping) fail("another overlap");
   }
 }

@@ -3,6 +3,7 @@
 
 #include "fuzz/scene_calls.h"
 #include "soak/world.h"
+#include "support/world.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
 #include "workloads/interlocking.h"
@@ -13,6 +14,7 @@ namespace radar::soak {
 namespace {
 
 using tools::Random;
+using tools::operator-;
 using tools::operator*;
 
 tools::Workload mixedFamilies(Random& random) {
@@ -55,12 +57,8 @@ Source source(Random& random) {
 }
 
 void aimAt(Query& query, const Transform& target) {
-  double squares = 0;
-  for (size_t k = 0; k < 3; ++k) {
-    query.direction[k] = target.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3];
-    squares += query.direction[k] * query.direction[k];
-  }
-  query.distance = std::sqrt(squares);
+  query.direction = test::placeOf(target) - test::placeOf(query.worldFromMesh);
+  query.distance = tools::lengthOf(query.direction);
 }
 
 /// What is asked about the contact.

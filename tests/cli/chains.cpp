@@ -47,9 +47,7 @@ void writeArm(const ScratchFolder& folder) {
 TEST_CASE("a chain's answers name its links, and the moment that geometry says") {
   const ScratchFolder folder;
   writeArm(folder);
-  const Run run = runProgram(folder, "query q.json");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "query q.json");
   const auto answers = linesOf(run.out);
   REQUIRE(answers.size() == 6);
   const auto& folds = answers[0];
@@ -82,13 +80,13 @@ TEST_CASE("a chain's answers name its links, and the moment that geometry says")
 TEST_CASE("answers of chains go through shards, streams and tables, and are compared by their links") {
   const ScratchFolder folder;
   writeArm(folder);
-  REQUIRE(runProgram(folder, "query q.json --mode reference --out a.jsonl").status == 0);
+  succeed(folder, "query q.json --mode reference --out a.jsonl");
   const std::string answers = folder.read("a.jsonl");
   for (const char* shard : {"0/2", "1/2"}) {
     const std::string part = std::string("part-") + shard[0];
-    REQUIRE(runProgram(folder, "query q.json --mode reference --out " + part + " --shard " + shard).status == 0);
+    succeed(folder, "query q.json --mode reference --out " + part + " --shard " + shard);
   }
-  REQUIRE(runProgram(folder, "merge part-0 part-1 --out merged.jsonl").status == 0);
+  succeed(folder, "merge part-0 part-1 --out merged.jsonl");
   CHECK(folder.read("merged.jsonl") == answers);
   folder.write("lines.jsonl",
                R"({"id": "swings", "scene": 0, "chain": 0, "from": [0, 0], "to": [1.5707963267948966, 0]})"
@@ -96,12 +94,12 @@ TEST_CASE("answers of chains go through shards, streams and tables, and are comp
   const size_t begin = answers.find("{\"id\": \"swings"), end = answers.find("{\"id\": \"excluded");
   const Run stream = runProgram(folder, "stream q.json --mode reference < lines.jsonl");
   CHECK(stream.out == answers + answers.substr(begin, end - begin));
-  REQUIRE(runProgram(folder, "query q.json --mode reference --out a.csv").status == 0);
+  succeed(folder, "query q.json --mode reference --out a.csv");
   CHECK_THAT(folder.read("a.csv"),
              Contains(",link,mesh,object,other_link,other_mesh,tri_a,tri_b,") && Contains("\nfolds,hit,"));
   checkRefused(folder, "query q.json --mode reference --out a.npy",
                "--out: a.npy: expected another file than .npy, as answers of a \"chain\" name links (query \"folds\")");
-  CHECK(runProgram(folder, "compare a.jsonl merged.jsonl").status == 0);
+  succeed(folder, "compare a.jsonl merged.jsonl");
   std::string other = answers;
   other.replace(other.find("\"other_link\": 1"), 15, "\"other_link\": 0");
   folder.write("b.jsonl", other);
@@ -117,9 +115,9 @@ TEST_CASE(
     "a page of chains is the same whether its answers are found or read, and answers of other chains are refused") {
   const ScratchFolder folder;
   writeArm(folder);
-  REQUIRE(runProgram(folder, "query q.json --out a.jsonl").status == 0);
-  REQUIRE(runProgram(folder, "view q.json --out found.html --gltf found.glb").status == 0);
-  REQUIRE(runProgram(folder, "view q.json a.jsonl --out read.html --gltf read.glb").status == 0);
+  succeed(folder, "query q.json --out a.jsonl");
+  succeed(folder, "view q.json --out found.html --gltf found.glb");
+  succeed(folder, "view q.json a.jsonl --out read.html --gltf read.glb");
   CHECK(folder.read("read.html") == folder.read("found.html"));
   CHECK(folder.read("read.glb") == folder.read("found.glb"));
   const auto data = pageData(folder.read("found.html"));

@@ -53,7 +53,7 @@ TEST_CASE("query --fail-on ends with status 1 where an answer has such a status,
   const ScratchFolder folder;
   writeQueries(folder);
   const std::string query = "query q.json --mode reference --out a.jsonl ";
-  CHECK(runProgram(folder, query).status == 0);
+  succeed(folder, query);
   const std::string answers = folder.read("a.jsonl");
   for (const auto& [list, found] :
        {std::pair{"hit", "1 hit"}, std::pair{"clear", "1 clear"}, std::pair{"overlap,undecided", "1 overlap"},
@@ -77,24 +77,23 @@ TEST_CASE("query --fail-on counts what an interrupted run had answered") {
   writeQueries(folder);
   const std::string out = GENERATE("part", "part.npy");
   const std::string query = "query q.json --mode reference --shard 0/1 --resume --out " + out;
-  REQUIRE(runProgram(folder, query).status == 0);
+  succeed(folder, query);
   CHECK(runProgram(folder, query + " --fail-on hit").status == 1);
   CHECK(runProgram(folder, query + " --fail-on clear").status == 1);
-  CHECK(runProgram(folder, query + " --fail-on undecided").status == 0);
+  succeed(folder, query + " --fail-on undecided");
 }
 
 TEST_CASE("compare finds answer files of every format equal, and says the first difference") {
   const ScratchFolder folder;
   writeQueries(folder);
-  REQUIRE(runProgram(folder, "query q.json --mode reference --out a.jsonl").status == 0);
-  REQUIRE(runProgram(folder, "query q.json --mode contact --cpu-batch 0 --out c.jsonl").status == 0);
-  REQUIRE(runProgram(folder, "query q.json --mode reference --out a.npy").status == 0);
-  REQUIRE(runProgram(folder, "query q.json --mode reference --shard 0/1 --out part").status == 0);
+  succeed(folder, "query q.json --mode reference --out a.jsonl");
+  succeed(folder, "query q.json --mode contact --cpu-batch 0 --out c.jsonl");
+  succeed(folder, "query q.json --mode reference --out a.npy");
+  succeed(folder, "query q.json --mode reference --shard 0/1 --out part");
   for (const char* b : {"a.jsonl", "c.jsonl", "a.npy", "part"}) {
     for (const char* a : {"a.jsonl", "a.npy", "part"}) {
       CAPTURE(a, b);
-      const Run run = runProgram(folder, "compare " + std::string(a) + " " + b);
-      CHECK(run.status == 0);
+      const Run run = succeed(folder, "compare " + std::string(a) + " " + b);
       CHECK(run.out == "3 answers agree\n");
     }
   }
@@ -141,8 +140,8 @@ TEST_CASE("compare goes through the lists of answers, too") {
 TEST_CASE("compare refuses what is no answer file, or is of other queries") {
   const ScratchFolder folder;
   writeQueries(folder);
-  REQUIRE(runProgram(folder, "query q.json --mode reference --out a.jsonl").status == 0);
-  REQUIRE(runProgram(folder, "query q.json --mode reference --shard 0/1 --out part.npy").status == 0);
+  succeed(folder, "query q.json --mode reference --out a.jsonl");
+  succeed(folder, "query q.json --mode reference --shard 0/1 --out part.npy");
   const std::string lines = folder.read("a.jsonl");
   folder.write("other.jsonl", replaced(lines, "\"misses\"", "\"goes by\""));
   folder.write("short.jsonl", lines.substr(0, lines.find('\n') + 1));

@@ -30,8 +30,7 @@ TEST_CASE("a word that is no command or option is named, with the nearest that i
 
 TEST_CASE("the program tells its version, and devices are listed for programs, too") {
   const ScratchFolder folder;
-  const Run version = runProgram(folder, "--version");
-  CHECK(version.status == 0);
+  const Run version = succeed(folder, "--version");
   CHECK_THAT(version.out, StartsWith("cyber-radar 0.") && Contains(", commit "));
   const auto devices = nlohmann::json::parse(runProgram(folder, "devices --json").out);
   CHECK((devices[0]["number"] == 0 && devices[0]["usable"] == true && devices[0]["limits"].size() > 9));
@@ -42,7 +41,7 @@ TEST_CASE("a run ends with a line that says what was done, and how fast") {
   CHECK(runProgram(folder, "workload table1 --boxes 9 --sensors 1 --out one").out ==
         "one/queries.json: 1 query, 1 scene, 2 meshes\n");
   CHECK_THAT(runProgram(folder, "query one/queries.json").err, Contains("cyber-radar: answered 1 query in "));
-  REQUIRE(runProgram(folder, "workload figure7 --teapots 5 --boxes 60 --steps 12 --out w").status == 0);
+  succeed(folder, "workload figure7 --teapots 5 --boxes 60 --steps 12 --out w");
   const Run run = runProgram(folder, "query w/queries.json --shard 0/2 --out part");
   CHECK_THAT(run.err,
              Contains("cyber-radar: answered 30 queries in ") && Contains(" per second): ") && Contains(" clear"));

@@ -10,8 +10,7 @@ using namespace radar::test;
 
 TEST_CASE("devices lists the devices with their numbers") {
   const ScratchFolder folder;
-  const Run run = runProgram(folder, "devices");
-  CHECK(run.status == 0);
+  const Run run = succeed(folder, "devices");
   CHECK_THAT(run.out, Contains("0  ") && Contains("usable"));
 }
 
@@ -30,9 +29,8 @@ TEST_CASE("devices --kernels compiles every kernel") {
 
 TEST_CASE("mode sampled reports the chosen resolution and writes statistics of its stages") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload table1 --boxes 500 --sensors 16 --out w").status == 0);
-  const Run run = runProgram(folder, "query w/queries.json --mode sampled --out a.jsonl --stats s.json");
-  REQUIRE(run.status == 0);
+  succeed(folder, "workload table1 --boxes 500 --sensors 16 --out w");
+  const Run run = succeed(folder, "query w/queries.json --mode sampled --out a.jsonl --stats s.json");
   CHECK_THAT(run.err, Contains("resolution: "));
   const auto stats = nlohmann::json::parse(folder.read("s.json"));
   CHECK(stats["device"].is_string());
@@ -45,11 +43,9 @@ TEST_CASE("mode sampled reports the chosen resolution and writes statistics of i
 TEST_CASE("scopes shows R, M and L in a page and writes their values on request") {
   const ScratchFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
-  const Run run = runProgram(folder,
-                             "scopes a.obj a.obj --at 0.5 0 -3 --direction 0 0 1 --distance 9 --resolution 32 "
-                             "--out p --raw");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder,
+                          "scopes a.obj a.obj --at 0.5 0 -3 --direction 0 0 1 --distance 9 --resolution 32 "
+                          "--out p --raw");
   const auto data = radar::test::pageData(folder.read("p/scopes.html"));
   CHECK(data["scopes"]["0"]["width"] == 32);
   CHECK(data["others"]["0"]["words"] == "An exact search: free for 3, then it touches object 0.");
@@ -71,9 +67,7 @@ TEST_CASE("scopes shows R, M and L in a page and writes their values on request"
 
 TEST_CASE("demo writes a table, queries, answers and a page that opens on a contact") {
   const ScratchFolder folder;
-  const Run run = runProgram(folder, "demo --out d");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "demo --out d");
   CHECK_THAT(run.out, Contains("teapot/0") && Contains("reference"));
   CHECK_FALSE(folder.read("d/table.txt").empty());
   const auto data = radar::test::pageData(folder.read("d/demo.html"));

@@ -31,8 +31,7 @@ void writeTriangles(const ScratchFolder& folder) {
 TEST_CASE("query answers in the order of the file and respects base scenes, masks and exclusions") {
   const ScratchFolder folder;
   writeTriangles(folder);
-  const Run run = runProgram(folder, "query q.json --mode reference");
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "query q.json --mode reference");
   const auto answers = linesOf(run.out);
   REQUIRE(answers.size() == 7);
   const struct {
@@ -62,8 +61,7 @@ TEST_CASE("query answers in the order of the file and respects base scenes, mask
 TEST_CASE("query reads a query file from standard input, whose paths are relative to the current folder") {
   const ScratchFolder folder;
   writeTriangles(folder);
-  const Run run = runProgram(folder, "query - --mode reference <q.json");
-  CHECK(run.status == 0);
+  const Run run = succeed(folder, "query - --mode reference <q.json");
   CHECK_FALSE(run.out.empty());
   CHECK(run.out == runProgram(folder, "query q.json --mode reference").out);
   const Run refused = runProgram(folder, "query -");
@@ -75,8 +73,7 @@ TEST_CASE("query answers once for its statistics, and --repeat asks for more") {
   const ScratchFolder folder;
   writeTriangles(folder);
   for (const auto& [options, passes] : {std::pair{"", 1}, std::pair{"--repeat 2", 3}}) {
-    const Run run = runProgram(folder, std::string("query q.json --stats s.json --device all ") + options);
-    CHECK(run.status == 0);
+    const Run run = succeed(folder, std::string("query q.json --stats s.json --device all ") + options);
     const auto stats = nlohmann::json::parse(folder.read("s.json"));
     CHECK_FALSE(stats["stages"].empty());
     int answered = 0;
@@ -95,8 +92,7 @@ TEST_CASE("answers about an assembly name the objects") {
                 {"id": "down", "scene": 0, "sensor": [0], "exclude": [0], "dir": [0,0,-1], "D": 8},
                 {"id": "left out", "scene": 0, "sensor": [0, 0,0,1,-1, 0,1,0,1, 1,0,0,2.5], "dir": [0,0,-1], "D": 1,
                  "skip_overlapping": true, "exclude": [0]}]})");
-  const Run run = runProgram(folder, "query assembly.json --mode reference");
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "query assembly.json --mode reference");
   const auto answers = linesOf(run.out);
   REQUIRE(answers.size() == 3);
   CHECK((answers[2]["status"] == "clear" && answers[2]["overlapping"] == nlohmann::json({1})));
@@ -112,8 +108,7 @@ TEST_CASE("query writes answers and statistics to files") {
   const ScratchFolder folder;
   writeTriangles(folder);
   const Run plain = runProgram(folder, "query q.json --mode reference");
-  const Run run = runProgram(folder, "query q.json --mode reference --out a.jsonl --stats s.json --repeat 3");
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "query q.json --mode reference --out a.jsonl --stats s.json --repeat 3");
   CHECK(run.out.empty());
   CHECK(folder.read("a.jsonl") == plain.out);
   CHECK(folder.list() == "a.jsonl a.obj q.json s.json");
@@ -126,7 +121,7 @@ TEST_CASE("query writes answers and statistics to files") {
   CHECK(stats["cpu_pairs"] == stats["pairs"]);
   CHECK(stats["cpu_queries"] == 7);
   // Mode contact leaves few queries to the CPU whole, which counts what it does as mode reference does.
-  REQUIRE(runProgram(folder, "query q.json --cpu-batch 100 --stats s.json").status == 0);
+  succeed(folder, "query q.json --cpu-batch 100 --stats s.json");
   const auto left = nlohmann::json::parse(folder.read("s.json"));
   for (const char* key : {"pairs", "cpu_pairs", "cpu_queries"}) CHECK(left[key] == stats[key]);
   CHECK(stats["device"].is_null());
@@ -139,8 +134,7 @@ TEST_CASE("sweep describes the contact in words, and --json prints the answer li
   const ScratchFolder folder;
   writeTriangles(folder);
   const std::string arguments = "sweep a.obj a.obj --at 0 0 -3 --rotate 0 0 1 90 --direction 0 0 1 --distance 9 ";
-  const Run words = runProgram(folder, arguments + "--speed 2");
-  CHECK(words.status == 0);
+  const Run words = succeed(folder, arguments + "--speed 2");
   CHECK_THAT(words.out,
              Contains("hit: first contact after 3 of 9") && Contains("object 0 (a.obj)") && Contains("after 1.5 s"));
   const Run crossing = runProgram(folder,
@@ -173,8 +167,7 @@ TEST_CASE("workload writes the same files each time, and query answers them") {
     }
     CHECK(folder.read("one/queries.json") == folder.read("two/queries.json"));
     CHECK(folder.read("one/scene-0.npy") == folder.read("two/scene-0.npy"));
-    const Run run = runProgram(folder, "query one/queries.json");
-    CHECK(run.status == 0);
+    const Run run = succeed(folder, "query one/queries.json");
     CHECK(linesOf(run.out).size() >= 4);
   }
 }
@@ -183,8 +176,7 @@ TEST_CASE("help shows examples, and a call without a command points to the help"
   const ScratchFolder folder;
   CHECK_THAT(runProgram(folder, "--help").out, Contains("cyber-radar demo"));
   for (const char* command : {"sweep", "query", "scopes", "view", "workload"}) {
-    const Run run = runProgram(folder, std::string(command) + " --help");
-    CHECK(run.status == 0);
+    const Run run = succeed(folder, std::string(command) + " --help");
     CHECK_THAT(run.out, Contains("Examples:"));
   }
   const Run nothing = runProgram(folder, "");
@@ -209,9 +201,7 @@ TEST_CASE("query leaves what the sensor rests on, skips what it crosses and list
                 {"id": "touching", "scene": 0, "sensor": [0], "exclude": [3], "dir": [1,0,0], "D": 8, "hits": 2}]})");
   const char* mode = GENERATE("contact", "reference");
   CAPTURE(mode);
-  const Run run = runProgram(folder, std::string("query q.json --mode ") + mode);
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, std::string("query q.json --mode ") + mode);
   const auto lines = linesOf(run.out);
   CHECK(lines[0]["status"] == "clear");
   CHECK(lines[1]["status"] == "overlap");
@@ -245,9 +235,7 @@ TEST_CASE("query tells the closest approach and the last contact, and a page sho
                 {"id": "alone", "scene": 0, "sensor": [1], "exclude": [0], "dir": [0,0,2], "D": 8, "closest": true}]})");
   const char* mode = GENERATE("contact", "reference");
   CAPTURE(mode);
-  const Run run = runProgram(folder, std::string("query q.json --out a.jsonl --mode ") + mode);
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, std::string("query q.json --out a.jsonl --mode ") + mode);
   const auto lines = linesOf(folder.read("a.jsonl"));
   const nlohmann::json &closest = lines[0]["closest"], &exit = lines[1]["exit"];
   CHECK((closest["distance_lo"] <= 3 && closest["distance_hi"] >= 3 && closest["distance_hi"] < 3 + 1e-12));
@@ -260,15 +248,13 @@ TEST_CASE("query tells the closest approach and the last contact, and a page sho
   CHECK((lines[2]["exit"]["lo"] == 0.25 && lines[2]["exit"]["hi"] == 0.25 && !lines[2].contains("closest")));
   CHECK(lines[3]["closest"].is_null());
 
-  REQUIRE(runProgram(folder, "view q.json a.jsonl --out page.html").status == 0);
+  succeed(folder, "view q.json a.jsonl --out page.html");
   const nlohmann::json data = pageData(folder.read("page.html"));
   CHECK(data["moments"]["as"] == nlohmann::json({{"u1", "AQECAg=="}}));  // closest, closest, exit, exit
   const Run table = runProgram(folder, "query q.json --out a.csv");
   CHECK(table.status == 2);
   CHECK_THAT(table.err, Contains("\"closest\" or \"exit\" have lists (query \"past\")"));
-  const Run sweep =
-      runProgram(folder, "sweep a.obj rod.obj --at 1 1 0.5 --direction 0 0 1 --distance 8 --exit --closest");
-  CHECK(sweep.status == 0);
+  const Run sweep = succeed(folder, "sweep a.obj rod.obj --at 1 1 0.5 --direction 0 0 1 --distance 8 --exit --closest");
   CHECK_THAT(sweep.out,
              Contains("nearest 0 to object 0") && Contains("out of  object 0 (a.obj), and of all others, after 0.5"));
 }
@@ -308,9 +294,7 @@ TEST_CASE("query answers steps in which objects move and meshes are deformed") {
                 {"id": "raised", "scene": 1, "sensor": [1], "dir": [0,0,1], "D": 12}]})");
   const char* mode = GENERATE("contact", "reference");
   CAPTURE(mode);
-  const Run run = runProgram(folder, std::string("query q.json --mode ") + mode);
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, std::string("query q.json --mode ") + mode);
   const auto lines = linesOf(run.out);
   CHECK((lines[0]["t"] == 6 && lines[0]["fraction"] == 0.5 && lines[0]["time"] == 1.5));
   CHECK((lines[0]["fraction_lo"] <= 0.5 && lines[0]["fraction_hi"] >= 0.5 && lines[0]["point"][2] == 6));
@@ -330,16 +314,14 @@ TEST_CASE("a query that turns is answered with a bracket of the step, shown on a
                 {"id": "away", "scene": 0, "sensor": [0], "motion": [0, 0, -1],
                  "turn": {"axis": [1, 0, 0], "angle": -1, "centre": [0, 0, 0]}}]})");
   const char* mode = GENERATE("contact", "reference");
-  const Run run = runProgram(folder, std::string("query q.json --out a.jsonl --mode ") + mode);
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, std::string("query q.json --out a.jsonl --mode ") + mode);
   const auto lines = linesOf(folder.read("a.jsonl"));
   CHECK((lines[0]["status"] == "hit" && lines[0]["t"] == lines[0]["fraction_lo"]));
   CHECK((lines[0]["fraction_lo"] <= 1 / 3.0 + 1e-9 && lines[0]["fraction_hi"] >= 1 / 3.0 - 1e-9));
   CHECK(double(lines[0]["fraction_hi"]) - double(lines[0]["fraction_lo"]) < 1e-6);
   CHECK((lines[1]["status"] == "clear"));
-  CHECK(runProgram(folder, "query q.json --check").status == 0);
-  REQUIRE(runProgram(folder, "view q.json a.jsonl --out v.html --gltf v.glb").status == 0);
+  succeed(folder, "query q.json --check");
+  succeed(folder, "view q.json a.jsonl --out v.html --gltf v.glb");
   const auto queries = pageData(folder.read("v.html"))["queries"];
   CHECK(queries["turns"]["1"] == nlohmann::json::parse(R"({"axis": [1, 0, 0], "angle": -1, "centre": [0, 0, 0]})"));
   CHECK(queries["turns"].size() == 2);

@@ -15,8 +15,7 @@ constexpr const char* kParts = "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\no lid\nf 1 3
 TEST_CASE("info names a file's nodes as query files do, and says how each is closed and wound") {
   const ScratchFolder folder;
   folder.write("two parts.obj", kParts);
-  const Run run = runProgram(folder, "info 'two parts.obj'");
-  CHECK(run.status == 0);
+  const Run run = succeed(folder, "info 'two parts.obj'");
   CHECK(run.out ==
         "two parts.obj: 2 nodes, 4 triangles, 12 vertices\n"
         "  2 x 1 x 1, from (0, 0, 0) to (2, 1, 1)\n"

@@ -14,7 +14,7 @@ const std::string kScopes = "scopes w/mesh-0.ply w/mesh-1.ply --direction 1 0 0 
 const std::string kScale = "scale --sensors 2 --boxes 50 --steps 1 --repeat 1 --resolution 16 ";
 
 void makeQueries(const ScratchFolder& folder) {
-  REQUIRE(runProgram(folder, "workload figure7 --teapots 5 --boxes 60 --steps 12 --out w").status == 0);
+  succeed(folder, "workload figure7 --teapots 5 --boxes 60 --steps 12 --out w");
 }
 
 /// Runs the program where no file grows beyond `blocks` of 512 bytes, as on a full disk; `out` has all that it prints.
@@ -56,10 +56,10 @@ TEST_CASE("on a full disk a command names the file, and nothing is left half-wri
   for (const ScratchFolder* each : {&whole, &folder}) {
     makeQueries(*each);
     for (const std::string shard : {"0", "1"}) {
-      REQUIRE(runProgram(*each, kQuery + "--shard " + shard + "/2 --out p" + shard).status == 0);
+      succeed(*each, kQuery + "--shard " + shard + "/2 --out p" + shard);
     }
   }
-  REQUIRE(runProgram(whole, arguments).status == 0);
+  succeed(whole, arguments);
   for (const int blocks : {0, 1}) {
     if (blocks == 1 && named == "s.json") continue;  // it has room
     CAPTURE(arguments, blocks);
@@ -128,7 +128,7 @@ TEST_CASE("a command whose standard output is full says so") {
 TEST_CASE("a folder that takes no files is refused by name, whoever asks") {
   const ScratchFolder folder;
   makeQueries(folder);
-  REQUIRE(runProgram(folder, kQuery + "--shard 0/1 --out p").status == 0);
+  succeed(folder, kQuery + "--shard 0/1 --out p");
   // Below a file, and where not even root creates anything.
   for (const std::string out : {"w/queries.json/d", "/proc/d"}) {
     for (const std::string& arguments :
@@ -150,7 +150,7 @@ TEST_CASE("a run that could not even write its first line leaves nothing that hi
   makeQueries(folder);
   REQUIRE(runOnFullDisk(folder, kQuery + "--out a.jsonl", 0).status == 2);
   CHECK(folder.list() == "w");
-  CHECK(runProgram(folder, kQuery + "--out a.jsonl").status == 0);
+  succeed(folder, kQuery + "--out a.jsonl");
 }
 
 TEST_CASE("a command that is killed while it writes leaves no half of a file under its name") {
@@ -159,7 +159,7 @@ TEST_CASE("a command that is killed while it writes leaves no half of a file und
                "workload table1 --boxes 500 --binary --out d", kScopes + "--raw --out d");
   const ScratchFolder whole, folder;
   for (const ScratchFolder* each : {&whole, &folder}) makeQueries(*each);
-  REQUIRE(runProgram(whole, arguments).status == 0);
+  succeed(whole, arguments);
   // The system ends the process when a file would grow beyond 4 blocks.
   CHECK(runProgram(folder, arguments, "ulimit -f 4; ").status != 0);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {

@@ -44,7 +44,7 @@ TEST_CASE("an output that is an input, by whatever name, is refused before any w
   checkRefused(folder, "query - --out q.json <q.json", "--out: q.json: expected another file than");
   folder.write("a.partial", folder.read("q.json"));
   checkRefused(folder, "query a.partial --out a", "--out: a.partial: expected another file than");
-  REQUIRE(runProgram(folder, kQuery + "--shard 0/1 --out part").status == 0);
+  succeed(folder, kQuery + "--shard 0/1 --out part");
   checkRefused(folder, "merge part --out ./part", "--out: ./part: expected another file than");
   REQUIRE(runCommand(folder, "cp q.json a.* d; cd d; cp q.json scopes.json; cp q.json trace.json").status == 0);
   checkRefused(folder, "scopes d/scopes.json --query p --out d", "--out: d/scopes.json: expected another file than");
@@ -61,7 +61,7 @@ TEST_CASE("two outputs in one file are refused, and links are written through") 
        {"--out a --stats ./a", "--out a --stats a.partial", "--out ahead --stats d/../nothing-yet"}) {
     checkRefused(folder, kQuery + files, "expected a file of its own, got that of --out");
   }
-  REQUIRE(runProgram(folder, kQuery + "--out ahead --stats /dev/null").status == 0);
+  succeed(folder, kQuery + "--out ahead --stats /dev/null");
   CHECK(std::filesystem::is_symlink(folder.path() / "ahead"));
   CHECK(folder.read("nothing-yet") == runProgram(folder, kQuery).out);
 }
@@ -78,11 +78,11 @@ TEST_CASE("devices and pipes get their bytes at once") {
   };
   CHECK(readPipe(kQuery + "--out pipe") == answers);
   CHECK_THAT(readPipe(kQuery + "--stats pipe --out a"), Contains("\"queries\": 1,"));
-  REQUIRE(runProgram(folder, kQuery + "--shard 0/1 --out part").status == 0);
+  succeed(folder, kQuery + "--shard 0/1 --out part");
   CHECK(readPipe(kQuery + "--shard 0/1 --out pipe") == folder.read("part"));
   CHECK(readPipe("merge part --out pipe") == answers);
   CHECK(std::filesystem::is_fifo(folder.path() / "pipe"));
-  CHECK(runProgram(folder, kQuery + "--out /dev/null --stats /dev/null").status == 0);
+  succeed(folder, kQuery + "--out /dev/null --stats /dev/null");
   CHECK(runProgram(folder, kQuery + "--out /dev/stdout | cat").out == answers);
   CHECK_THAT(runProgram(folder, kQuery + "--out /dev/full").err,
              Contains("/dev/full: expected a file to write to, got No space"));
@@ -92,7 +92,7 @@ TEST_CASE("devices and pipes get their bytes at once") {
 
 TEST_CASE("while a run writes its file, no other run does") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload interlocking --sensors 3000 --binary --out w").status == 0);
+  succeed(folder, "workload interlocking --sensors 3000 --binary --out w");
   const std::string query = kProgram + "query w/queries.json --mode reference --out a ";
   // The first run is stopped while it writes.
   const Run run =

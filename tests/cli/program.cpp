@@ -38,6 +38,13 @@ Run runLab(const ScratchFolder& folder, const std::string& arguments, const std:
   return runCommand(folder, environment + " '" RADAR_LAB "' " + arguments);
 }
 
+Run succeed(const ScratchFolder& folder, const std::string& arguments, decltype(runProgram)& run) {
+  Run done = run(folder, arguments, "");
+  CAPTURE(arguments, done.err);
+  REQUIRE(done.status == 0);
+  return done;
+}
+
 void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words,
                   decltype(runProgram)& run) {
   CAPTURE(arguments);

@@ -21,6 +21,9 @@ Run runProgram(const ScratchFolder& folder, const std::string& arguments, const 
 /// The same with radar-lab.
 Run runLab(const ScratchFolder& folder, const std::string& arguments, const std::string& environment = "");
 
+/// Runs `cyber-radar arguments`, or what `run` runs, which must end with status 0.
+Run succeed(const ScratchFolder& folder, const std::string& arguments, decltype(runProgram)& run = runProgram);
+
 /// Checks that `cyber-radar arguments`, or what `run` runs, ends with status 2, prints nothing but an error that
 /// contains `words`, and neither makes, removes nor changes a file in `folder`.
 void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words,

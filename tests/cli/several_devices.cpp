@@ -10,13 +10,11 @@ using namespace radar::test;
 
 TEST_CASE("query on several devices writes the same answers as on one") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload figure7 --teapots 6 --boxes 200 --steps 3 --out w").status == 0);
-  const Run one = runProgram(folder, "query w/queries.json --mode contact --device 0");
-  REQUIRE(one.status == 0);
+  succeed(folder, "workload figure7 --teapots 6 --boxes 200 --steps 3 --out w");
+  const Run one = succeed(folder, "query w/queries.json --mode contact --device 0");
   for (const char* devices : {"all", "0,1", "1,0"}) {
-    const Run run = runProgram(
+    const Run run = succeed(
         folder, std::string("query w/queries.json --mode contact --cpu-batch 0 --stats s.json --device ") + devices);
-    CHECK(run.status == 0);
     CHECK(run.out == one.out);
     const auto stats = nlohmann::json::parse(folder.read("s.json"));
     REQUIRE(stats["devices"].size() == 2);
@@ -27,7 +25,7 @@ TEST_CASE("query on several devices writes the same answers as on one") {
 TEST_CASE("an unknown device or a bad option ends with status 2 and a message that names it") {
   const ScratchFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
-  REQUIRE(runProgram(folder, "workload table1 --boxes 20 --sensors 2 --out w").status == 0);
+  succeed(folder, "workload table1 --boxes 20 --sensors 2 --out w");
   checkRefused(folder, "query w/queries.json --mode contact --device 0,7", "device 7 does not exist");
   checkRefused(folder, "query w/queries.json --mode contact --device 1,1", "device 1 is named twice");
   checkRefused(folder, "query w/queries.json --mode contact --device 0,", "--device");
@@ -41,9 +39,7 @@ TEST_CASE("an unknown device or a bad option ends with status 2 and a message th
 
 TEST_CASE("scale prints tables and writes a table, a chart and a trace") {
   const ScratchFolder folder;
-  const Run run = runProgram(folder, "scale --sensors 2,3 --boxes 2000 --steps 2 --repeat 1 --resolution 32 --out s");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "scale --sensors 2,3 --boxes 2000 --steps 2 --repeat 1 --resolution 32 --out s");
   CHECK_THAT(run.out, Contains("speed_up") && Contains("\n      3  0+1 ") && Contains("readback"));
   CHECK_THAT(folder.read("s/scale.svg"),
              Contains("mode sampled") && Contains("; commit ") && Contains("<text>0+1</text>") && Contains("</svg>"));
@@ -63,10 +59,8 @@ TEST_CASE("scale prints tables and writes a table, a chart and a trace") {
 
 TEST_CASE("scale measures the first queries of each batch of a query file") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload table1 --boxes 100 --sensors 12 --shape box --out w").status == 0);
-  const Run run = runProgram(folder, "scale w/queries.json --mode contact --sensors 4,12 --repeat 1");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  succeed(folder, "workload table1 --boxes 100 --sensors 12 --shape box --out w");
+  const Run run = succeed(folder, "scale w/queries.json --mode contact --sensors 4,12 --repeat 1");
   CHECK_THAT(run.out, Contains("w/queries.json") && Contains("\n     12  0+1 "));
   CHECK(run.err.empty());
   CHECK_THAT(runProgram(folder, "scale w/queries.json --mode contact --sensors 4 --repeat 1 --device 1").err,

@@ -10,9 +10,7 @@ namespace {
 const std::string kWorkload = "workload figure7 --teapots 5 --boxes 60 --steps 12 --out w";
 
 std::string answersTo(const ScratchFolder& folder, const std::string& mode) {
-  const Run run = runProgram(folder, "query w/queries.json --out whole.jsonl --mode " + mode);
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "query w/queries.json --out whole.jsonl --mode " + mode);
   return folder.read("whole.jsonl");
 }
 
@@ -25,7 +23,7 @@ std::string headOf(const std::string& part) {
 
 TEST_CASE("shards, merged, are the bytes of one run") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  succeed(folder, kWorkload);
   const std::string mode = GENERATE("contact", "sampled", "reference");
   const std::string whole = answersTo(folder, mode);
   for (const int count : {1, 2, 4, 7, 100}) {
@@ -37,40 +35,35 @@ TEST_CASE("shards, merged, are the bytes of one run") {
       const std::string name = "part-" + std::to_string(i);
       if (count < 100 || i < 4) {
         const std::string shard = std::to_string(i) + "/" + std::to_string(count);
-        const Run run =
-            runProgram(folder, "query w/queries.json --mode " + mode + " --shard " + shard + " --out " + name);
-        INFO(run.err);
-        REQUIRE(run.status == 0);
+        const Run run = succeed(folder, "query w/queries.json --mode " + mode + " --shard " + shard + " --out " + name);
       }
       parts += " " + name;
     }
     if (count == 100) continue;
-    const Run merged = runProgram(folder, "merge" + parts + " --out merged.jsonl");
-    INFO(merged.err);
-    REQUIRE(merged.status == 0);
+    const Run merged = succeed(folder, "merge" + parts + " --out merged.jsonl");
     CHECK(folder.read("merged.jsonl") == whole);
   }
 }
 
 TEST_CASE("merge writes records to .npy alone, and lines to any other file") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  succeed(folder, kWorkload);
   for (const std::string part : {"lines", "records.npy"}) {
-    REQUIRE(runProgram(folder, "query w/queries.json --mode reference --shard 0/1 --out " + part).status == 0);
+    succeed(folder, "query w/queries.json --mode reference --shard 0/1 --out " + part);
   }
   checkRefused(folder, "merge lines --out z.npy",
                "z.npy: expected another file than .npy or .csv, as the shards are lines");
   checkRefused(folder, "merge records.npy --out z.jsonl", "z.jsonl: expected a file .npy, as the shards are");
-  CHECK(runProgram(folder, "merge records.npy --out z.npy").status == 0);
+  succeed(folder, "merge records.npy --out z.npy");
   CHECK(folder.read("z.npy").starts_with("\x93NUMPY"));
   CHECK(runProgram(folder, "merge lines --out /dev/stdout").out.starts_with("{\"id\""));
 }
 
 TEST_CASE("merge names shards that are missing, doubled, cut off or of another run") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  succeed(folder, kWorkload);
   const auto answer = [&](const std::string& shard, const std::string& out, const std::string& more = "") {
-    REQUIRE(runProgram(folder, "query w/queries.json --shard " + shard + " --out " + out + more).status == 0);
+    succeed(folder, "query w/queries.json --shard " + shard + " --out " + out + more);
   };
   for (int i = 0; i < 4; ++i) answer(std::to_string(i) + "/4", "p" + std::to_string(i));
   checkRefused(folder, "merge p0 p2 --out all.jsonl",
@@ -104,7 +97,7 @@ TEST_CASE("merge names shards that are missing, doubled, cut off or of another r
 
 TEST_CASE("a run that was killed while it wrote is finished by --resume with the bytes of one run") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload table1 --boxes 50 --sensors 40000 --shape box --binary --out w").status == 0);
+  succeed(folder, "workload table1 --boxes 50 --sensors 40000 --shape box --binary --out w");
   const std::string query = "query w/queries.json --mode reference ";
   const std::string whole = runProgram(folder, query).out;
   // The system ends the process when its file would grow beyond 4000 blocks, here within a line.
@@ -122,23 +115,23 @@ TEST_CASE("a run that was killed while it wrote is finished by --resume with the
                "a.jsonl.partial: shard: expected shard 0/2, got all");
   CHECK(folder.read("a.jsonl.partial") == partial);
 
-  REQUIRE(runProgram(folder, query + "--out a.jsonl --resume").status == 0);
+  succeed(folder, query + "--out a.jsonl --resume");
   CHECK(folder.read("a.jsonl") == whole);
   CHECK(folder.list() == "a.jsonl w");
 }
 
 TEST_CASE("a run with --resume keeps what is complete, wherever the file was cut") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  succeed(folder, kWorkload);
   const std::string query = "query w/queries.json --shard 1/2 --out part --resume";
-  REQUIRE(runProgram(folder, query).status == 0);
+  succeed(folder, query);
   const std::string part = folder.read("part");
   const size_t head = headOf(part).size();
   for (const size_t length : {size_t{0}, size_t{1}, head - 1, head, head + 1, part.find('\n', head) + 1,
                               part.size() / 2, part.size() - 1, part.size()}) {
     CAPTURE(length);
     folder.write("part.partial", part.substr(0, length));
-    REQUIRE(runProgram(folder, query).status == 0);
+    succeed(folder, query);
     CHECK(folder.read("part") == part);
     CHECK(folder.list() == "part w");
   }
@@ -158,7 +151,7 @@ TEST_CASE("a run with --resume keeps what is complete, wherever the file was cut
 
 TEST_CASE("bad shards and options without a file are refused by name") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  succeed(folder, kWorkload);
   for (const char* shard : {"1", "2/2", "0/0", "-1/2", "1/2/3", "a/b", "0/99999999999"}) {
     checkRefused(folder, std::string("query w/queries.json --out a --shard ") + shard, "--shard: expected I/N");
   }

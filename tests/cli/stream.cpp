@@ -59,7 +59,7 @@ TEST_CASE("each query of a stream gets its answer before the next one is written
 
 TEST_CASE("a thousand queries at once are answered as in a file, whatever chooses their modes") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload soup --objects 10 --sensors 1000 --triangles 6 --out w").status == 0);
+  succeed(folder, "workload soup --objects 10 --sensors 1000 --triangles 6 --out w");
   auto file = nlohmann::json::parse(folder.read("w/queries.json"));
   REQUIRE(file["queries"].size() == 1000);
   for (size_t i = 0; i < 1000; i += 3) file["queries"][i]["mode"] = i % 2 == 0 ? "reference" : "sampled";
@@ -88,9 +88,7 @@ TEST_CASE("sensors of a stream are where the numbers of a scaled mesh far away p
     "scenes": [{"instances": [[0, 1,0,0,-512340, 0,1,0,-4512350, 0,0,1,0]]}], "queries": []})");
   folder.write("lines", R"({"id": "a", "scene": 0, "sensor": [0, 1,0,0,-512340, 0,1,0,-4512350, 0,0,1,-2.5],)"
                         R"( "dir": [0,0,1], "D": 8})");
-  const Run run = runProgram(folder, "stream q.json <lines");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "stream q.json <lines");
   CHECK(nlohmann::json::parse(run.out)["t"].get<double>() == Approx(2.5).epsilon(0).margin(1e-9));
 }
 
@@ -113,7 +111,7 @@ TEST_CASE("a bad line of a stream is named, after the answers to those before it
   folder.write("lines", line("a", -1, ", \"hits\": 2"));
   CHECK_THAT(runProgram(folder, "stream q.json --mode sampled <lines").err,
              Contains("standard input:1: expected the mode contact or reference, as \"hits\" needs"));
-  CHECK(runProgram(folder, "stream q.json --mode reference <lines").status == 0);
+  succeed(folder, "stream q.json --mode reference <lines");
 }
 
 TEST_CASE("a query that only the engine can refuse is named, too") {
@@ -233,7 +231,7 @@ TEST_CASE("query --check reads everything as query does, says what there is, and
   checkRefused(folder, "query q.json --check --out q.json", "--out: q.json: expected another file than");
   writeScene(folder, line("a", -1) + "," + line("a", -2));
   checkRefused(folder, "query q.json --check", "queries[1].id: expected an id that no other query has");
-  REQUIRE(runProgram(folder, "workload figure7 --teapots 3 --boxes 40 --steps 3 --binary --out w").status == 0);
+  succeed(folder, "workload figure7 --teapots 3 --boxes 40 --steps 3 --binary --out w");
   CHECK_THAT(runProgram(folder, "query w/queries.json --check --mode reference").out,
              Contains(" queries: 9 reference\n"));
 }

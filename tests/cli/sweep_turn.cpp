@@ -26,9 +26,7 @@ const std::string kQuarter = "sweep post.obj rod.obj --mode reference --at 6 -4 
 TEST_CASE("sweep turns its sensor, and says when in the motion it meets what") {
   const ScratchFolder folder;
   writeGate(folder);
-  const Run run = runProgram(folder, kQuarter + "--json");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, kQuarter + "--json");
   const auto answer = nlohmann::json::parse(run.out);
   CHECK(answer["status"] == "hit");
   CHECK(std::abs(answer["fraction"].get<double>() * 3 - 1.57079632679) < 2e-6);
@@ -43,14 +41,12 @@ TEST_CASE("sweep turns its sensor, and says when in the motion it meets what") {
     return of["fraction_hi"].get<double>() - of["fraction_lo"].get<double>();
   };
   CHECK(width(nlohmann::json::parse(fine.out)) < 1e-3 * width(answer));
-  const Run shown = runProgram(folder, kQuarter + "--view v.html");
-  REQUIRE(shown.status == 0);
+  const Run shown = succeed(folder, kQuarter + "--view v.html");
   CHECK(shown.out == words.out + "page: v.html\n");
   CHECK(pageData(folder.read("v.html"))["queries"]["turns"]["0"]["angle"] == 3);
-  const Run free = runProgram(folder,
-                              "sweep post.obj rod.obj --mode reference --at 6 -4 0 --turn 0 0 1 1.5 "
-                              "--direction 0 0 1 --distance 2 --expect clear");
-  CHECK(free.status == 0);
+  const Run free = succeed(folder,
+                           "sweep post.obj rod.obj --mode reference --at 6 -4 0 --turn 0 0 1 1.5 "
+                           "--direction 0 0 1 --distance 2 --expect clear");
   CHECK_THAT(free.out,
              Contains("moves by (0, 0, 2)\nturns by 1.5 (85.9437 degrees) about (0, 0, 1) through (6, -4, 0)\n") &&
                  Contains("clear: certainly no contact during the motion"));
@@ -73,12 +69,9 @@ TEST_CASE("a sweep that turns has the answer of the same query in a file") {
 
 TEST_CASE("radar-lab writes hard cases that turn as a query file") {
   const ScratchFolder folder;
-  const Run written = runLab(folder, "hard-cases --family 'far centre' --cases 6 --out c");
-  INFO(written.err);
-  REQUIRE(written.status == 0);
+  const Run written = succeed(folder, "hard-cases --family 'far centre' --cases 6 --out c", runLab);
   CHECK_THAT(folder.read("c/queries.json"), Contains("\"turn\": {\"axis\": ["));
-  const Run run = runProgram(folder, "query c/queries.json --mode reference");
-  CHECK(run.status == 0);
+  const Run run = succeed(folder, "query c/queries.json --mode reference");
   CHECK_THAT(run.out, Contains("\"fraction_hi\": "));
 }
 
@@ -109,9 +102,7 @@ TEST_CASE("sweep moves a ball, and refuses one without a radius") {
   const ScratchFolder folder;
   writeGate(folder);
   const std::string down = " --mode reference --at 0 0 5 --direction 0 0 -1 --distance 9 ";
-  const Run run = runProgram(folder, "sweep rod.obj ball:1.5" + down + "--json --view v.html");
-  INFO(run.err);
-  REQUIRE(run.status == 0);
+  const Run run = succeed(folder, "sweep rod.obj ball:1.5" + down + "--json --view v.html");
   const auto answer = nlohmann::json::parse(run.out);
   CHECK(std::abs(answer["t"].get<double>() - 3.5) < 2e-6);
   CHECK(pageData(folder.read("v.html"))["meshes"].back()["isRound"] == true);

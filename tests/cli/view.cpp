@@ -38,26 +38,24 @@ TEST_CASE("a page is the same whether its answers are found, or read as lines or
   folder.write("left.json", queryFile(query("free", R"("dir": [0, 0, 1], "D": 8, "skip_overlapping": true)") + "," +
                                       R"({"id": "left out", "scene": 0, "sensor": [0, 1,0,0,1, 0,0,-1,1, 0,1,0,3],
                                           "dir": [0, 0, 1], "D": 8, "skip_overlapping": true})"));
-  REQUIRE(runProgram(folder, "workload soup --objects 40 --sensors 50 --out soup").status == 0);
-  REQUIRE(runProgram(folder, "workload figure7 --teapots 3 --boxes 40 --steps 2 --out flight").status == 0);
+  succeed(folder, "workload soup --objects 40 --sensors 50 --out soup");
+  succeed(folder, "workload figure7 --teapots 3 --boxes 40 --steps 2 --out flight");
   for (const std::string file :
        {"flight/queries.json", "soup/queries.json", "steps.json", "several.json", "left.json"}) {
     CAPTURE(file);
-    REQUIRE(runProgram(folder, "view " + file + " --mode reference --out found.html").status == 0);
+    succeed(folder, "view " + file + " --mode reference --out found.html");
     for (const std::string answers : {"answers.jsonl", "answers.npy"}) {
       CAPTURE(answers);
       if ((file == "left.json" || file == "several.json") && answers == "answers.npy") continue;
-      REQUIRE(runProgram(folder, "query " + file + " --mode reference --out " + answers).status == 0);
-      const Run run = runProgram(folder, "view " + file + " " + answers + " --out read.html");
-      INFO(run.err);
-      REQUIRE(run.status == 0);
+      succeed(folder, "query " + file + " --mode reference --out " + answers);
+      const Run run = succeed(folder, "view " + file + " " + answers + " --out read.html");
       CHECK(folder.read("read.html") == folder.read("found.html"));
     }
   }
   const auto found = pageData(folder.read("found.html"));
   CHECK(found["queries"]["asked"]["0"] == nlohmann::json({{"skip_overlapping", true}}));
   CHECK(found["left"] == nlohmann::json::parse(R"({"1": [0]})"));
-  REQUIRE(runProgram(folder, "view flight/queries.json --mode reference --out found.html --title Flight").status == 0);
+  succeed(folder, "view flight/queries.json --mode reference --out found.html --title Flight");
   const auto data = pageData(folder.read("found.html"));
   CHECK(data["title"] == "Flight");
   CHECK(data["queries"]["count"] == 6);
@@ -71,7 +69,7 @@ TEST_CASE("text of a query file cannot leave the page's data") {
   folder.write("a.obj", kTriangle);
   const std::string hostile = "</script><script>document.title = 'mine'</script><!--";
   folder.write("q.json", queryFile(query(hostile, R"("dir": [0,0,1], "D": 8)")));
-  REQUIRE(runProgram(folder, "view q.json --mode reference --out q.html").status == 0);
+  succeed(folder, "view q.json --mode reference --out q.html");
   const std::string page = folder.read("q.html");
   CHECK(page.find(hostile) == std::string::npos);
   CHECK(pageData(page)["queries"]["id"] == nlohmann::json({hostile}));
@@ -79,8 +77,8 @@ TEST_CASE("text of a query file cannot leave the page's data") {
 
 TEST_CASE("what is too much for a page is cut, and the page says so") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload scale --boxes 100001 --sensors 10001 --shape box --out w").status == 0);
-  REQUIRE(runProgram(folder, "view w/queries.json --mode reference --out w.html").status == 0);
+  succeed(folder, "workload scale --boxes 100001 --sensors 10001 --shape box --out w");
+  succeed(folder, "view w/queries.json --mode reference --out w.html");
   const auto data = pageData(folder.read("w.html"));
   CHECK(data["queries"]["count"] == 10'000);
   CHECK(data["notes"] == nlohmann::json({"The first 10000 of 10001 queries.",
@@ -92,8 +90,8 @@ TEST_CASE("answers that are not those of the queries are refused") {
   folder.write("a.obj", kTriangle);
   folder.write("q.json",
                queryFile(query("p", R"("dir": [0,0,1], "D": 8)") + "," + query("q", R"("dir": [0,0,1], "D": 1)")));
-  REQUIRE(runProgram(folder, "query q.json --mode reference --out good.jsonl").status == 0);
-  REQUIRE(runProgram(folder, "query q.json --mode reference --shard 0/2 --out part.npy").status == 0);
+  succeed(folder, "query q.json --mode reference --out good.jsonl");
+  succeed(folder, "query q.json --mode reference --shard 0/2 --out part.npy");
   const std::string good = folder.read("good.jsonl"), first = good.substr(0, good.find('\n') + 1);
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -134,7 +132,7 @@ TEST_CASE("answers that are not those of the queries are refused") {
   checkRefused(folder, "view q.json good.jsonl --gltf q.glb --title Q", "--title: expected it with --out");
   // What is too large for a double is null.
   folder.write("huge.jsonl", changed("\"point\": [", "\"point\": [1e308, null, 0], \"was\": ["));
-  CHECK(runProgram(folder, "view q.json huge.jsonl --out huge.html").status == 0);
+  succeed(folder, "view q.json huge.jsonl --out huge.html");
   checkRefused(folder, "sweep a.obj a.obj --direction 0 0 1 --distance 1 --view a.obj",
                "--view: a.obj: expected another");
 }

@@ -4,6 +4,7 @@
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
+#include "support/world.h"
 #include "workloads/hard_cases.h"
 #include "workloads/query_fields.h"
 #include "workloads/shapes.h"
@@ -26,10 +27,8 @@ std::vector<Query> deciding(std::vector<Query> queries) {
 TEST_CASE("in mode sampled a decision is that of the whole answer") {
   const char* family = GENERATE("convex", "interlocking", "lattice", "touching");
   CAPTURE(family);
-  const tools::Workload workload = tools::hardScene(tools::hardFamily(family), 3, 0, 64, tools::Company::mixed);
-  Scene scene;
-  tools::replaceBy(workload, 0, scene);
-  std::vector<Query> queries = tools::queriesOf(workload.queries, 64);
+  auto [scene, queries] =
+      test::caseOf(tools::hardScene(tools::hardFamily(family), 3, 0, 64, tools::Company::mixed), 64);
   Sweeper sweeper(test::device(), scene);
   const std::vector<Result> whole = sweeper.run(queries, Mode::sampled).results;
   queries = deciding(std::move(queries));

@@ -5,6 +5,7 @@
 #include "agreement/compare.h"
 #include "support/answer.h"
 #include "support/catch.h"
+#include "support/world.h"
 #include "workloads/hard_cases.h"
 #include "workloads/random_shapes.h"
 #include "workloads/shapes.h"
@@ -116,10 +117,8 @@ std::vector<HardCase> changesOf(const HardCase& hard, Random& random) {
 }
 
 Result exactAnswer(const HardCase& hard) {
-  const Workload workload = sceneOf({hard}, Company::isolated);
-  Scene scene;
-  replaceBy(workload, 0, scene);
-  return test::answer(scene, workload.queries[0]);
+  const auto [scene, queries] = test::caseOf(sceneOf({hard}, Company::isolated));
+  return test::answer(scene, queries[0]);
 }
 
 }  // namespace

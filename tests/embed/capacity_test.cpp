@@ -20,7 +20,7 @@ using test::execute;
 struct Batch {
   Batch(Scene from, std::vector<Query> asked)
       : scene(std::move(from)), queries(std::move(asked)), truth(CpuSweeper(scene).run(queries)) {}
-  explicit Batch(const tools::Workload& workload) : Batch(sceneOf(workload), test::queriesOf(workload)) {}
+  explicit Batch(test::Case asked) : Batch(std::move(asked.scene), std::move(asked.queries)) {}
 
   /// Of a recording; no answer may be wrong.
   fuzz::Outcomes outcomes(const Capacity& capacity, const Device& device = test::device()) const {
@@ -41,11 +41,6 @@ struct Batch {
           outcomes.answered + outcomes.unresolved);
     return outcomes;
   }
-  static Scene sceneOf(const tools::Workload& workload) {
-    Scene scene;
-    tools::replaceBy(workload, 0, scene);
-    return scene;
-  }
   Scene scene;
   std::vector<Query> queries;
   Answers truth;
@@ -54,7 +49,7 @@ struct Batch {
 Batch hardBatch(const char* family) {
   tools::Workload workload = tools::hardScene(tools::hardFamily(family), 6, 0, 48, tools::Company::mixed);
   for (size_t i = 0; i < workload.queries.size(); i += 5) workload.queries[i].anyHit = true;
-  return Batch(workload);
+  return Batch(test::caseOf(workload));
 }
 
 /// A teapot inside a sphere that is hardly larger, so that very many node pairs overlap; and beside it a cheap query
@@ -183,14 +178,14 @@ tools::Workload ringsOnPegs(uint32_t sensors) {
 TEST_CASE("the default capacity grows with the number of queries, for sensors of 5,000 triangles") {
   for (const uint32_t count : {64u, 840u}) {
     CAPTURE(count);
-    const Batch batch(bumpyBalls(count));
+    const Batch batch(test::caseOf(bumpyBalls(count)));
     REQUIRE(batch.queries.size() == count);
     CHECK(batch.outcomes({.queries = count}).answered == count);
   }
 }
 
 TEST_CASE("where meshes interlock, the default capacity does not suffice, and needed() tells what does") {
-  const Batch batch(ringsOnPegs(64));
+  const Batch batch(test::caseOf(ringsOnPegs(64)));
   Capacity capacity{.queries = 64};
   std::vector<fuzz::Outcomes> all;
   do {

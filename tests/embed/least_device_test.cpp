@@ -100,10 +100,7 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
   size_t onDevice = 0;
   for (const tools::HardFamily& family : tools::hardFamilies()) {
     CAPTURE(family.name);
-    const tools::Workload workload = tools::hardScene(family, 17, 0, 24, tools::Company::mixed);
-    Scene scene;
-    tools::replaceBy(workload, 0, scene);
-    const std::vector<Query> queries = tools::queriesOf(workload.queries);
+    const auto [scene, queries] = test::caseOf(tools::hardScene(family, 17, 0, 24, tools::Company::mixed));
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
     onDevice += checkCpus(sweeper, scene, queries).stats.submissions > 0;
   }
@@ -167,11 +164,9 @@ TEST_CASE("a device without shaderOutputLayer gives the same answers and picture
   CHECK_FALSE(least.impl().choosesLayers);
   for (const tools::HardFamily& family : tools::hardFamilies()) {
     CAPTURE(family.name);
-    const tools::Workload workload = tools::hardScene(family, 17, 0, 12, tools::Company::mixed);
-    Scene scene;
-    tools::replaceBy(workload, 0, scene);
-    std::vector<Query> queries = tools::queriesOf(workload.queries);
-    std::erase_if(queries, [&](const Query& query) { return !validate(query, scene, Mode::sampled).empty(); });
+    test::Case one = test::caseOf(tools::hardScene(family, 17, 0, 12, tools::Company::mixed));
+    std::erase_if(one.queries, [&](const Query& query) { return !validate(query, one.scene, Mode::sampled).empty(); });
+    const auto& [scene, queries] = one;
     if (queries.empty()) continue;
     Sweeper sweeper(least, scene), expected(test::device(), scene);
     CHECK(test::differenceOf(sweeper.run(queries, Mode::sampled), expected.run(queries, Mode::sampled)) == "");

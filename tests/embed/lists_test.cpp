@@ -6,6 +6,7 @@
 #include "fuzz/check_recorded.h"
 #include "gpu/barrier.h"
 #include "support/catch.h"
+#include "support/world.h"
 #include "workloads/random.h"
 
 namespace {
@@ -127,11 +128,8 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
 }
 
 TEST_CASE("a list whose searches lack room is invalid and says why, and its neighbours are answered") {
-  const tools::Workload workload =
-      tools::hardScene(tools::hardFamily("interlocking"), 12, 0, kRoom.queries, tools::Company::mixed);
-  Scene scene;
-  tools::replaceBy(workload, 0, scene);
-  std::vector<Query> queries = queriesOf(workload);
+  auto [scene, queries] =
+      test::caseOf(tools::hardScene(tools::hardFamily("interlocking"), 12, 0, kRoom.queries, tools::Company::mixed));
   queries[0].hits = kAllHits;
   Capacity small = kRoom;
   small.candidates = 4;

@@ -4,6 +4,7 @@
 #include "radar/cpu_sweeper.h"
 #include "support/catch.h"
 #include "support/seeds.h"
+#include "support/world.h"
 #include "unit/turn_truth.h"
 #include "workloads/turning_families.h"
 
@@ -24,10 +25,8 @@ TEST_CASE("hard cases of every turning family meet nothing before lo, and certai
     for (uint64_t number = 0; number < 40; ++number) {
       const HardCase hard = hardCase(family, seed, number);
       const double value = family.values[number % family.values.size()];
-      Scene scene;
-      const Workload workload = sceneOf({hard}, Company::isolated);
-      replaceBy(workload, 0, scene);
-      const Query query = workload.queries[0];
+      const auto [scene, queries] = test::caseOf(sceneOf({hard}, Company::isolated));
+      const Query& query = queries[0];
       const Result found = CpuSweeper(scene, 1).run({&query, 1}).results[0];
       ++statuses[found.status];
       CAPTURE(seed, family.name, number, value, static_cast<uint32_t>(found.status), found.lo, found.hi);

@@ -1,10 +1,7 @@
 // Large arrays, which searches read here and there, and the nodes of trees, placed for the processor's caches.
 #pragma once
 
-#include <sys/mman.h>
-
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <new>
 #include <vector>
@@ -12,16 +9,7 @@
 namespace radar {
 
 /// Asks for huge pages, of which the processor's cache of addresses covers more.
-inline void adviseHugePages(void* memory, size_t bytes) {
-#ifdef MADV_HUGEPAGE
-  constexpr size_t kPage = 4096, kWorth = size_t{4} << 20;
-  if (bytes < kWorth) return;
-  const size_t before = (kPage - reinterpret_cast<uintptr_t>(memory) % kPage) % kPage;
-  madvise(static_cast<char*>(memory) + before, (bytes - before) / kPage * kPage, MADV_HUGEPAGE);
-#else
-  static_cast<void>(memory), static_cast<void>(bytes);
-#endif
-}
+void adviseHugePages(void* memory, size_t bytes);
 
 /// Memory in huge pages, where an array is large enough.
 template <class Value>

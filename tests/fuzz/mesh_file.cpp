@@ -107,6 +107,7 @@ name="a"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><
                   "property double z\nproperty list uchar short extra\nelement face 1\nproperty list int "
                   "ushort vertex_index\nend_header\n") +
       std::string(100, '\0'));
+  seeds.emplace_back("3OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
   seeds.emplace_back("34OFF\n3 1 0 # counts\n0 0 0 1\n1 0 0 2\n0 1 0 1\n3 0 1 2 255 0 0\n");
   seeds.emplace_back(
       "0o a\\\n b\ng c\nv 1 2 3 0.5\nv 0 0 0 1 1 1\nv 1e-50 +3 -0\nf -1 -2 -3\nl 1 2 3\np 1\nf 1/1 2//1 3/1/1\n");

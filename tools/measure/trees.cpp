@@ -59,7 +59,8 @@ void addRow(Json& report, const std::string& over, size_t count, MeasureTree* ot
             std::span<const float> moved, std::span<const Transform> places) {
   TreeCost ours;
   std::optional<TreeCost> others;
-  for (int pass = 0; pass < 3; ++pass) {
+  const size_t passes = std::clamp<size_t>(5'000'000 / count, 1, 15);
+  for (size_t pass = 0; pass < passes; ++pass) {
     keepLeast(ours, ourTree(mesh, moved, places), pass == 0);
     if (const auto next = other(mesh, moved, places))
       keepLeast(others.emplace(others.value_or(*next)), *next, pass == 0);

@@ -38,7 +38,7 @@ TEST_CASE(
   wide.m[0] = 3;
   const std::vector<Instance> objects{{1, wide}, {0, poseAt(40, 0, 5)}};
   Transform turned{{0, -2, 0, 0.1, 2, 0, 0, 0.2, 0, 0, 2, 0}};  // edges of 2: up to z = 1
-  REQUIRE(peerRows().size() == 6);
+  REQUIRE(peerRows().size() == 7);
   for (const BaselineRow& row : peerRows()) {
     CAPTURE(row.family);
     const std::unique_ptr<Baseline> baseline = row.make(workload, row.sizes.back());
@@ -75,7 +75,7 @@ TEST_CASE("a hull closes a cup, triangles do not") {
     baseline->show(objects);
     const std::optional<double> t = baseline->cast(down);
     REQUIRE(t.has_value());
-    CHECK(*t == Approx(row.family == "Bullet hull" ? 1.5 : 4.4).margin(1e-3));
+    CHECK(*t == Approx(row.family.starts_with("Bullet hull") ? 1.5 : 4.4).margin(1e-3));
   }
 }
 

@@ -1,6 +1,7 @@
 // FCL: trees of OBBRSS over triangles under a dynamic tree of boxes, at steps along the motion and then by bisection.
 // FCL's continuous mode is approximate and takes one pair of objects per call, so users with a scene do not use it.
 #include <fcl/fcl.h>
+#include <fcl/math/motion/interp_motion.h>
 
 #include <limits>
 
@@ -128,15 +129,20 @@ class FclBodies : public RigidBodies {
     uint32_t steps;
     std::optional<double> first{};
   };
+  // FCL 0.7.0 would turn it about a point that it leaves unset.
+  static fcl::InterpMotion<double> motionOf(const fcl::Transform3d& from, const fcl::Transform3d& to) {
+    return {from.linear(), from.translation(), to.linear(), to.translation(), fcl::Vector3d::Zero()};
+  }
   static bool sweepPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
     auto& sweep = *static_cast<Sweep*>(data);
     const fcl::CollisionObjectd& object = a == sweep.region ? *b : *a;
     const fcl::ContinuousCollisionRequestd request(sweep.steps, 1e-4, fcl::CCDM_LINEAR, fcl::GST_LIBCCD,
                                                    fcl::CCDC_NAIVE);
     fcl::ContinuousCollisionResultd result;
-    fcl::continuousCollide(sweep.moving->collisionGeometry().get(), sweep.from, sweep.to,
-                           object.collisionGeometry().get(), object.getTransform(), object.getTransform(), request,
-                           result);
+    const fcl::Transform3d& still = object.getTransform();
+    const fcl::InterpMotion<double> motion = motionOf(sweep.from, sweep.to), rest = motionOf(still, still);
+    fcl::continuousCollide(sweep.moving->collisionGeometry().get(), &motion, object.collisionGeometry().get(), &rest,
+                           request, result);
     if (result.is_collide) sweep.first = std::min(sweep.first.value_or(1), result.time_of_contact);
     return false;
   }

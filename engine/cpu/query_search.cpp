@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "cpu/clearance.h"
 #include "cpu/closest_approach.h"
 #include "cpu/last_contact.h"
+#include "query/hits.h"
 #include "query/near_walk.h"
 
 namespace radar::cpu {
@@ -14,6 +17,13 @@ namespace radar::cpu {
 namespace {
 
 const Piece kAtRest;
+constexpr size_t kCacheLine = 64;
+
+template <bool toWrite, class Value>
+void prefetch(const Value& value) {
+  const char* const bytes = reinterpret_cast<const char*>(&value);
+  for (size_t at = 0; at < sizeof(Value); at += kCacheLine) __builtin_prefetch(bytes + at, toWrite ? 1 : 0);
+}
 
 }  // namespace
 
@@ -44,6 +54,8 @@ struct QuerySearch::Task {
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
 
+  /// The motion past an object; stays in place until the next one.
+  const Translation& pastOf(ObjectId id) const { return course.isStep() ? past_.emplace(course.past(id)) : motion; }
   /// How pairs with an object are judged. Computed only if the query needs it.
   PairRule ruleFor(ObjectId id) const {
     if (!query.ignoreLeaving && !query.skipOverlapping) return {};
@@ -56,7 +68,106 @@ struct QuerySearch::Task {
   double reach(const PairRule& rule) const {
     return std::max(query.clearance, query.ignoreLeaving ? 2 * rule.slack : 0);
   }
+
+ private:
+  mutable std::optional<Translation> past_;
 };
+
+/// A query without a clearance whose answer is under way.
+struct QuerySearch::Flight {
+  size_t place;  ///< in the batch
+  Task task;
+  Participants participants;
+  FirstContact finder;
+  double reach;
+  Walk walk;
+  ObjectId object = kNone;  ///< that the walk has reached
+
+  Flight(const Batch& batch, size_t i, FlightMemory& memory)
+      : place(i),
+        task(batch.queries[i], batch.scene),
+        participants(task.query, task.scene),
+        finder(task.query, task.motion, std::move(memory.touching)),
+        reach(reachOf(finder, task.motion)),
+        walk(task.scene, batch.tree, task.motion, roomyBox(task.query, task.scene), reach, memory.open) {}
+
+  /// Whether a query can take turns with others on one thread.
+  static bool canAnswer(const Query& query, const Batch& batch) {
+    return query.clearance == 0 && !hasLists(query) && !turns(query) && Participants::areFew(query) &&
+           batch.scene.meshes[query.mesh].parts.empty() && batch.tree.inRange();
+  }
+  /// Takes a step of the walk, unless it has reached an object or is over.
+  bool step() {
+    if (object != kNone || walk.isOver()) return false;
+    object = walk.step(reach);
+    if (object != kNone && !participants.contain(object)) object = kNone;
+    return true;
+  }
+};
+
+void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
+  stop_ = &batch.stop;
+  const auto placeOf = [&](size_t at) { return batch.order.empty() ? at : batch.order[at]; };
+  const auto answerAlone = [&](size_t i) {
+    const Query& query = batch.queries[i];
+    Listed* const listed = hasLists(query) ? &batch.lists[i] : nullptr;
+    batch.results[i] = answer(query, batch.scene, batch.tree, listed, batch.stop);
+    batch.results[i].tier = batch.tier;
+    if (listed == nullptr) return;
+    for (Result& hit : listed->hits) hit.tier = batch.tier;
+    if (listed->closest) listed->closest->at.tier = batch.tier;
+    if (listed->exit) listed->exit->tier = batch.tier;
+  };
+  std::array<std::optional<Flight>, kFlights> flights;
+  const auto begin = [&](size_t slot) {
+    while (first < last && !flights[slot]) {
+      throwIfStopped(batch.stop);
+      const size_t i = placeOf(first);
+      if (++first < last) prefetch<false>(batch.queries[placeOf(first)]);
+      prefetch<true>(batch.results[i]);
+      if (Flight::canAnswer(batch.queries[i], batch)) {
+        flights[slot].emplace(batch, i, memory_[slot]);
+      } else {
+        answerAlone(i);
+      }
+    }
+    return flights[slot].has_value();
+  };
+  for (bool isUnderWay = true; isUnderWay;) {
+    isUnderWay = false;
+    for (size_t slot = 0; slot < kFlights; ++slot) isUnderWay |= begin(slot);
+    for (bool isWalking = true; isWalking;) {
+      isWalking = false;
+      for (std::optional<Flight>& flight : flights) isWalking |= flight && flight->step();
+    }
+    for (size_t slot = 0; slot < kFlights; ++slot) {
+      std::optional<Flight>& flight = flights[slot];
+      if (!flight) continue;
+      if (flight->object != kNone) {
+        search(flight->task, flight->object, flight->finder);
+        flight->reach = reachOf(flight->finder, flight->task.motion);
+        flight->object = kNone;
+      } else {
+        Result& result = batch.results[flight->place];
+        result = answerOf(flight->task, flight->finder, {}, nullptr);
+        result.tier = batch.tier;
+        memory_[slot].touching = flight->finder.giveBack();
+        flight.reset();
+      }
+    }
+  }
+}
+
+template <class Finder>
+Result QuerySearch::answerOf(const Task& task, const Finder& finder, std::span<const ObjectId> skipped, Listed* lists) {
+  if (lists != nullptr) {
+    *lists = {finder.nearest(), {skipped.begin(), skipped.end()}, {}, {}};
+    for (Result& hit : lists->hits) task.course.toQuery(hit);
+  }
+  Result first = finder.first();
+  task.course.toQuery(first);
+  return first;
+}
 
 Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists,
                            const std::stop_token& stop) {
@@ -73,22 +184,14 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
       search(task, id, finder);
       finder.endObject();
     });
-    if (lists != nullptr) {
-      *lists = {finder.nearest(), skipped, {}, {}};
-      for (Result& hit : lists->hits) task.course.toQuery(hit);
-    }
-    Result first = finder.first();
-    task.course.toQuery(first);
-    return first;
+    return answerOf(task, finder, skipped, lists);
   };
   Result first;
   if (query.clearance > 0) {
     first = find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
     describeStart(query, scene, tree, skipped, first, lists);
   } else {
-    FirstContact finder(query, task.motion, std::move(touching_));
-    first = find(finder);
-    touching_ = finder.giveBack();
+    first = find(FirstContact(query, task.motion));
   }
   if (query.exit) lists->exit = lastContact(task, tree, skipped, first);
   if (query.closest) lists->closest = closestApproach(query, scene, tree, skipped, first);
@@ -124,7 +227,7 @@ Result QuerySearch::lastContact(const Task& task, const ObjectTree& tree, std::s
   const auto reach = [&] { return reachOf(finder, back); };
   walk(Participants(query, task.scene), tree, back, box, reach, [&](ObjectId id) {
     if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
-    const Translation& past = pastOf(task, id);
+    const Translation& past = task.pastOf(id);
     finder.beginObject({}, past);
     MeshPlacement atEnd = task.placement;
     for (size_t k = 0; k < 3; ++k) {
@@ -171,7 +274,7 @@ Closest QuerySearch::closestApproach(const Query& query, const Scene::Impl& scen
            [&](ObjectId id) {
              if (std::binary_search(skipped.begin(), skipped.end(), id)) return;
              const Object& object = scene.objects[id].object;
-             const Translation& past = pastOf(task, id);
+             const Translation& past = task.pastOf(id);
              nearest_.add(id, scene.meshes[object.mesh], object.worldFromMesh, past, past, {}, {});
            });
   nearest_.advance(std::numeric_limits<double>::infinity(), pairs_);
@@ -299,13 +402,9 @@ void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, co
 template <class Finder>
 void QuerySearch::search(const Task& task, ObjectId id, Finder& finder) {
   const PairRule rule = task.ruleFor(id);
-  const Translation& motion = pastOf(task, id);
+  const Translation& motion = task.pastOf(id);
   finder.beginObject(rule, motion);
   searchObject(task, id, task.placement, motion, task.reach(rule), finder);
-}
-
-const Translation& QuerySearch::pastOf(const Task& task, ObjectId id) {
-  return task.course.isStep() ? past_.emplace(task.course.past(id)) : task.motion;
 }
 
 void QuerySearch::searchObject(const Task& task, ObjectId id, const MeshPlacement& sensor, const Piece& piece,

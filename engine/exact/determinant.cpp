@@ -18,21 +18,28 @@ Estimate estimate(const Determinant& d) {
   return estimate(w, rounded(d.x), rounded(d.y), underflowOf(w));
 }
 
-FineEstimate fineEstimate(const Determinant& d) {
-  DoubleDouble w[3], x[3], y[3];
+FineCross::FineCross(const Difference& x, const Difference& y) {
+  DoubleDouble a[3], b[3];
   for (int k = 0; k < 3; ++k) {
-    w[k] = difference(d.w.to[k], d.w.from[k]);
-    x[k] = difference(d.x.to[k], d.x.from[k]);
-    y[k] = difference(d.y.to[k], d.y.from[k]);
+    a[k] = difference(x.to[k], x.from[k]);
+    b[k] = difference(y.to[k], y.from[k]);
   }
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    const DoubleDouble p = a[i] * b[j], q = a[j] * b[i];
+    minors_[k] = p - q;
+    sizes_[k] = std::abs(p.high) + std::abs(q.high);
+  }
+}
+
+FineEstimate FineCross::along(const Difference& w) const {
   DoubleDouble value;
   double magnitude = 0, size = 1;
   for (int k = 0; k < 3; ++k) {
-    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    const DoubleDouble p = x[i] * y[j], q = x[j] * y[i];
-    value = value + w[k] * (p - q);
-    magnitude += std::abs(w[k].high) * (std::abs(p.high) + std::abs(q.high));
-    size += std::abs(w[k].high);
+    const DoubleDouble c = difference(w.to[k], w.from[k]);
+    value = value + c * minors_[k];
+    magnitude += std::abs(c.high) * sizes_[k];
+    size += std::abs(c.high);
   }
   return {value, kFineRelative * magnitude + kUnderflow * size};
 }

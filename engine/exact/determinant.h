@@ -31,7 +31,20 @@ struct FineEstimate {
 };
 
 Estimate estimate(const Determinant& d);
-FineEstimate fineEstimate(const Determinant& d);
+
+/// x cross y, for determinants w . (x cross y).
+class FineCross {
+ public:
+  FineCross(const Difference& x, const Difference& y);
+  FineEstimate along(const Difference& w) const;
+
+ private:
+  DoubleDouble minors_[3];
+  double sizes_[3];
+};
+inline FineEstimate fineEstimate(const Determinant& d) {
+  return FineCross(d.x, d.y).along(d.w);
+}
 Dyadic exactly(const Determinant& d);
 
 /// -1, 0 or 1; uses doubles if they suffice.

@@ -31,7 +31,9 @@ Determinant denominator(const Event& e) {
 Event evaluated(Kind kind, const Vector& direction, const Vector& from, const Vector& to, const Vector& x0,
                 const Vector& x1, const Vector& y0, const Vector& y1) {
   Event e{kind, direction, from, to, x0, x1, y0, y1, 0, 0};
-  const Estimate num = estimate(numerator(e)), den = estimate(denominator(e));
+  // Inlined, both share the products of x and y.
+  const Vector gap = rounded({from, to}), x = rounded({x0, x1}), y = rounded({y0, y1});
+  const Estimate num = estimate(gap, x, y, underflowOf(gap)), den = estimate(direction, x, y, underflowOf(direction));
   e.s = num.value / den.value;
   const double sure = std::abs(den.value) - den.error;
   e.error = sure > 0 ? (1 + 8 * kUnit) * ((num.error + std::abs(e.s) * den.error) / sure + 2 * kUnit * std::abs(e.s)) +
@@ -60,7 +62,8 @@ struct FineParameter {
 
 /// The parameter as a double-double, by one step of long division, whose own error is below 2^-102 |s|.
 FineParameter fineParameter(const Event& e) {
-  const FineEstimate num = fineEstimate(numerator(e)), den = fineEstimate(denominator(e));
+  const FineCross cross({e.x0, e.x1}, {e.y0, e.y1});
+  const FineEstimate num = cross.along({e.from, e.to}), den = cross.along({kOrigin, e.direction});
   const double first = num.value.high / den.value.high;
   const DoubleDouble rest = num.value - DoubleDouble{first, 0} * den.value;
   const DoubleDouble s = quickSum(first, rest.high / den.value.high);

@@ -4,15 +4,8 @@
 
 namespace radar {
 
-namespace {
-
-// Longer lists are marked, shorter ones are looked through.
-constexpr size_t kFew = 16;
-
-}  // namespace
-
 Participants::Participants(const Query& query, const Scene::Impl& scene) : query_(query), scene_(scene) {
-  if (query.exclude.size() <= kFew) return;
+  if (areFew(query)) return;
   thread_local std::vector<bool> marks;
   if (marks.size() < scene.objects.size()) marks.resize(scene.objects.size());
   for (const ObjectId id : query.exclude) marks[id] = true;
@@ -26,10 +19,9 @@ Participants::~Participants() {
 
 namespace detail {
 
-OpenNode* openNodes(size_t count) {
+std::vector<OpenNode>& openNodes() {
   thread_local std::vector<OpenNode> nodes;
-  if (nodes.size() < count) nodes.resize(count);
-  return nodes.data();
+  return nodes;
 }
 
 }  // namespace detail

@@ -10,7 +10,8 @@
 
 namespace radar {
 
-/// The objects that share a mask bit with a query, which does not exclude them. On a thread there is one at a time.
+/// The objects that share a mask bit with a query, which does not exclude them. On a thread there is one at a time that
+/// excludes more than a few.
 class Participants {
  public:
   /// Both outlive this. The excluded objects exist.
@@ -23,8 +24,13 @@ class Participants {
     return (scene_.objects[id].object.mask & query_.mask) != 0 && !(marks_ != nullptr ? (*marks_)[id] : isListed(id));
   }
   const Scene::Impl& scene() const { return scene_; }
+  /// Whether the excluded objects are few, so that there may be several on a thread.
+  static bool areFew(const Query& query) { return query.exclude.size() <= kFew; }
 
  private:
+  // Longer lists are marked, shorter ones are looked through.
+  static constexpr size_t kFew = 16;
+
   bool isListed(ObjectId id) const {
     return std::find(query_.exclude.begin(), query_.exclude.end(), id) != query_.exclude.end();
   }
@@ -47,7 +53,7 @@ struct OpenNode {
   uint32_t link;
 };
 /// Memory of this thread for the nodes that a walk has yet to visit.
-OpenNode* openNodes(size_t count);
+std::vector<OpenNode>& openNodes();
 
 /// Prefetches the child nodes or the object of a node, because a scene's tree and objects do not fit a cache.
 inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, const Scene::Impl& scene) {
@@ -59,6 +65,52 @@ inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, 
 }
 
 }  // namespace detail
+
+/// A walk over the objects of a tree that a moving box may meet, nearest first, step by step: walks that take turns
+/// wait for memory at the same time.
+class Walk {
+ public:
+  /// `tree` must be in range. `memory`: of this walk alone. Both and the scene outlive this.
+  Walk(const Scene::Impl& scene, const ObjectTree& tree, const Piece& piece, const Box& start, double reach,
+       std::vector<detail::OpenNode>& memory)
+      : scene_(scene), nodes_(tree.nodes().data()), meets_(start, piece, tree) {
+    const size_t most = size_t{tree.depth()} + 2;
+    if (memory.size() < most) memory.resize(most);
+    bottom_ = top_ = memory.data();
+    if (!tree.nodes().empty()) push(meets_(nodes_[0], nodes_[0])[0], nodes_[0], reach);
+  }
+
+  bool isOver() const { return top_ == bottom_; }
+  /// Goes on until an object is reached that is met within `reach`, world units, and returns that; or until nodes are
+  /// to be read that were just asked for, or it is over, and returns kNone.
+  ObjectId step(double reach) {
+    while (!isOver()) {
+      const detail::OpenNode next = *--top_;
+      if (next.near > reach) continue;
+      if ((next.link & gpu::kLinkLeaf) != 0) return next.link & gpu::kLinkItem;
+      const gpu::ObjectNode &left = nodes_[next.link], &right = nodes_[next.link + 1];
+      detail::prefetch(left, nodes_, scene_);
+      detail::prefetch(right, nodes_, scene_);
+      const TwoDoubles near = meets_(left, right);
+      const bool leftFirst = near[0] <= near[1];
+      push(leftFirst ? near[1] : near[0], leftFirst ? right : left, reach);
+      push(leftFirst ? near[0] : near[1], leftFirst ? left : right, reach);
+      break;
+    }
+    return kNone;
+  }
+
+ private:
+  void push(double near, const gpu::ObjectNode& node, double reach) {
+    *top_ = {near, node.link};
+    top_ += near <= reach;
+  }
+
+  const Scene::Impl& scene_;
+  const gpu::ObjectNode* nodes_;
+  SweptBox meets_;
+  detail::OpenNode *bottom_, *top_;
+};
 
 /// Calls `visit` with each participant that the box `start` may meet on a piece of its way, nearest first; with all of
 /// them, in ascending order, if the tree is out of range. `reach`: double(): objects that are met later than after so
@@ -73,34 +125,13 @@ void walk(const Participants& participants, const ObjectTree& tree, const Piece&
     }
     return;
   }
-  if (tree.nodes().empty()) return;
-  const gpu::ObjectNode* const nodes = tree.nodes().data();
-  const SweptBox meets(start, piece, tree);
-  detail::OpenNode* const bottom = detail::openNodes(size_t{tree.depth()} + 2);
-  detail::OpenNode* top = bottom;
   double latest = reach();
-  const auto push = [&](double near, const gpu::ObjectNode& node) {
-    *top = {near, node.link};
-    top += near <= latest;
-  };
-  push(meets(nodes[0], nodes[0])[0], nodes[0]);
-  while (top != bottom) {
-    const detail::OpenNode next = *--top;
-    if (next.near > latest) continue;
-    if ((next.link & gpu::kLinkLeaf) != 0) {
-      const ObjectId id = next.link & gpu::kLinkItem;
-      if (!participants.contain(id)) continue;
-      visit(id);
-      latest = reach();
-      continue;
-    }
-    const gpu::ObjectNode &left = nodes[next.link], &right = nodes[next.link + 1];
-    detail::prefetch(left, nodes, scene);
-    detail::prefetch(right, nodes, scene);
-    const TwoDoubles near = meets(left, right);
-    const bool leftFirst = near[0] <= near[1];
-    push(leftFirst ? near[1] : near[0], leftFirst ? right : left);
-    push(leftFirst ? near[0] : near[1], leftFirst ? left : right);
+  Walk walk(scene, tree, piece, start, latest, detail::openNodes());
+  while (!walk.isOver()) {
+    const ObjectId id = walk.step(latest);
+    if (id == kNone || !participants.contain(id)) continue;
+    visit(id);
+    latest = reach();
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "radar/cpu_sweeper.h"
 #include "support/catch.h"
@@ -35,8 +36,23 @@ TEST_CASE("a large batch is answered place by place, a small one as it comes") {
 TEST_CASE("answers to a large batch are those to its queries one by one") {
   const test::Case asked = test::caseOf(
       tools::makeWorkload(tools::Table1{.boxes = 2'000, .sensors = 1'500, .shape = tools::SensorShape::box}));
+  // Queries of all kinds take turns, with few and with many objects excluded.
   std::vector<Query> queries = asked.queries;
-  for (size_t i = 0; i < queries.size(); i += 3) queries[i].hits = kAllHits;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    Query& query = queries[i];
+    if (i % 3 == 0) query.hits = kAllHits;
+    if (i % 5 < 2) query.exclude.resize(i % 5 == 0 ? 40 : 3);
+    std::iota(query.exclude.begin(), query.exclude.end(), ObjectId(i % 1'000));
+    query.ignoreLeaving = i % 7 == 1;
+    query.skipOverlapping = i % 7 == 2;
+    if (i % 7 == 3) query.clearance = 0.1;
+    if (i % 7 == 4) {
+      query.motion = std::exchange(query.direction, Vector{});
+      query.distance = 0;
+    }
+    if (i % 7 == 5) query.mask = 1 << i % 2;
+    query.anyHit = i % 3 == 1 && i % 11 == 0;
+  }
   CpuSweeper together(asked.scene, 2), alone(asked.scene, 1);
   const Answers answers = together.run(queries);
   for (size_t i = 0; i < queries.size(); ++i) {

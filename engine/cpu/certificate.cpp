@@ -34,42 +34,53 @@ int farthest(const exact::Triangle& triangle, const Vector& x, const Vector& y, 
   return second > 0 && last > 0 ? 2 : -1;
 }
 
-FeatureNumber acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, bool ofA) {
-  const exact::Triangle& face = ofA ? a : b;
-  const Vector x = minus(face[1], face[0]), y = minus(face[2], face[0]);
-  const int side = sureSign(d, x, y);
-  if (side == 0) return kNoFeature;
-  // The face of b is touched by the corner of a farthest along the motion, the face of a by that of b farthest against
-  // it.
-  const int corner = ofA ? farthest(b, x, y, -side) : farthest(a, x, y, side);
-  if (corner < 0 || !isOver(ofA ? b[corner] : a[corner], face, d)) return kNoFeature;
-  return ofA ? 3 + corner : corner;
-}
-
-FeatureNumber acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, int i, int k) {
-  const Vector &a0 = a[i], &a1 = a[(i + 1) % 3], &a2 = a[(i + 2) % 3];
-  const Vector &b0 = b[k], &b1 = b[(k + 1) % 3], &b2 = b[(k + 2) % 3];
-  const Vector x = minus(a1, a0), y = minus(b1, b0);
-  const int side = sureSign(d, x, y);
-  if (side == 0 || sureSign(minus(a2, a0), x, y) != -side || sureSign(minus(b2, b0), x, y) != side) return kNoFeature;
-  // Seen along d, the ends of each edge must be on different sides of the other.
-  const Vector w00 = minus(b0, a0), w01 = minus(b1, a0), w10 = minus(b0, a1), w11 = minus(b1, a1);
-  const int p = sureSign(d, w00, w10), r = sureSign(d, w00, w01);
-  if (p == 0 || r == 0 || sureSign(d, w01, w11) != -p || sureSign(d, w10, w11) != -r) return kNoFeature;
-  return 6 + 3 * i + k;
-}
-
 }  // namespace
 
-FeatureNumber certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, Axis axis) {
+FeatureNumber Certificate::first(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, Axis axis) {
   return axis < 2 ? acrossFace(a, b, d, axis == 0) : acrossEdges(a, b, d, (axis - 2) / 3, (axis - 2) % 3);
 }
 
-exact::Event eventOf(FeatureNumber feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d) {
-  if (feature < 3) return exact::vertexFace(d, a[feature], b);
-  if (feature < 6) return exact::faceVertex(d, a, b[feature - 3]);
-  const int i = (feature - 6) / 3, k = (feature - 6) % 3;
-  return exact::edgeEdge(d, a[i], a[(i + 1) % 3], b[k], b[(k + 1) % 3]);
+FeatureNumber Certificate::acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, bool ofA) {
+  const exact::Triangle face = exact::sorted(ofA ? a : b), &other = ofA ? b : a;
+  const exact::Kind kind = ofA ? exact::Kind::faceVertex : exact::Kind::vertexFace;
+  const Vector x = minus(face[1], face[0]), y = minus(face[2], face[0]);
+  const bool isKnown = side_ != 0 && event_.kind == kind && event_.x0 == face[0] && event_.x1 == face[1] &&
+                       event_.y1 == face[2] && event_.direction == d;
+  const int side = isKnown ? side_ : sureSign(d, x, y);
+  if (side == 0) return kNoFeature;
+  // The face of b is touched by the corner of a farthest along the motion, the face of a by that of b farthest against
+  // it.
+  const int corner = farthest(other, x, y, ofA ? -side : side);
+  if (corner < 0) return kNoFeature;
+  if (!isKnown || other[corner] != (ofA ? event_.to : event_.from)) {
+    if (!isOver(other[corner], face, d)) return kNoFeature;
+    event_ = ofA ? exact::faceVertex(d, face, other[corner]) : exact::vertexFace(d, other[corner], face);
+    side_ = side;
+  }
+  return ofA ? 3 + corner : corner;
+}
+
+FeatureNumber Certificate::acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, int i,
+                                       int k) {
+  const auto [p0, p1] = std::minmax(a[i], a[(i + 1) % 3]);
+  const auto [q0, q1] = std::minmax(b[k], b[(k + 1) % 3]);
+  const Vector x = minus(p1, p0), y = minus(q1, q0);
+  const bool isKnown = side_ != 0 && event_.kind == exact::Kind::edgeEdge && event_.x0 == p0 && event_.x1 == p1 &&
+                       event_.y0 == q0 && event_.y1 == q1 && event_.direction == d;
+  const int side = isKnown ? side_ : sureSign(d, x, y);
+  if (side == 0 || sureSign(minus(a[(i + 2) % 3], p0), x, y) != -side ||
+      sureSign(minus(b[(k + 2) % 3], q0), x, y) != side) {
+    return kNoFeature;
+  }
+  if (!isKnown) {
+    // Seen along d, the ends of each edge must be on different sides of the other.
+    const Vector w00 = minus(q0, p0), w01 = minus(q1, p0), w10 = minus(q0, p1), w11 = minus(q1, p1);
+    const int p = sureSign(d, w00, w10), r = sureSign(d, w00, w01);
+    if (p == 0 || r == 0 || sureSign(d, w01, w11) != -p || sureSign(d, w10, w11) != -r) return kNoFeature;
+    event_ = exact::edgeEdge(d, p0, p1, q0, q1);
+    side_ = side;
+  }
+  return 6 + 3 * i + k;
 }
 
 namespace {

@@ -14,20 +14,31 @@ using Axis = int;
 using FeatureNumber = int;
 inline constexpr FeatureNumber kNoFeature = -1;
 
-/// The features by which contact of triangle a, in motion along `direction`, with triangle b begins, whatever the time,
-/// if double precision can certify them; else kNoFeature. Certified means: these features alone are the farthest of
-/// each triangle towards the other along `axis`, and the motion takes an inner point of one to an inner point of the
-/// other.
-FeatureNumber certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, Axis axis);
+/// Certifies how contact of pairs of triangles begins. Triangles that meet in one edge or corner touch others by the
+/// same features: these are tested once.
+class Certificate {
+ public:
+  /// The features by which contact of triangle a, in motion along `direction`, with triangle b begins, whatever the
+  /// time, if double precision can certify them; else kNoFeature. Certified means: these features alone are the
+  /// farthest of each triangle towards the other along `axis`, and the motion takes an inner point of one to an inner
+  /// point of the other.
+  FeatureNumber first(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, Axis axis);
+  /// The contact by the features that were certified last. It has the bits of exact::contact's `first`.
+  const exact::Event& event() const { return event_; }
 
-/// The contact by features that certainlyFirst certified. It has the bits of exact::contact's `first`.
-exact::Event eventOf(FeatureNumber feature, const exact::Triangle& a, const exact::Triangle& b,
-                     const Vector& direction);
+ private:
+  FeatureNumber acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, bool ofA);
+  FeatureNumber acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, int i, int k);
+
+  exact::Event event_{};
+  int side_ =
+      0;  // of the motion, along the cross product of the event's edges or of its face; 0: there is no event yet
+};
 
 /// Whether the triangles may be in the plane of either, up to `slack`, in the sense of exact/blocking.h.
 bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double slack);
 
-/// Whether a contact by features that certainlyFirst certified certainly blocks: everything within `slack` of the point
+/// Whether a contact by certified features certainly blocks: everything within `slack` of the point
 /// of contact, as seen along `direction`, is inside both features. Not for triangles that mayShareAPlane(): those are
 /// judged by another rule.
 bool certainlyBlocks(FeatureNumber feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,

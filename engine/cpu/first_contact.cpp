@@ -1,7 +1,6 @@
 #include "cpu/first_contact.h"
 
 #include <algorithm>
-#include <optional>
 
 namespace radar::cpu {
 
@@ -20,20 +19,20 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
   const Vector& d = motion_->direction;
   const auto doesBlock = [&] { return !query_.ignoreLeaving || rule_.blocks(pair, *motion_); };
   const bool mayBePressed = query_.ignoreLeaving && mayShareAPlane(pair.a, pair.b, rule_.slack);
-  std::optional<exact::Event> certain;
-  if (const FeatureNumber feature = certainlyFirst(pair.a, pair.b, d, axis); feature != kNoFeature) {
-    const exact::Event event = eventOf(feature, pair.a, pair.b, d);
+  const exact::Event& event = certificate_.event();
+  bool isCertain = false;
+  if (const FeatureNumber feature = certificate_.first(pair.a, pair.b, d, axis); feature != kNoFeature) {
     if (event.s > event.error) {
       if (!mayBePressed) {
         return earliest_.considerKnown(name, pair, event, [&] {
           return !query_.ignoreLeaving || certainlyBlocks(feature, pair.a, pair.b, d, rule_.slack) || doesBlock();
         });
       }
-      certain = event;
+      isCertain = true;
     }
   }
   if (mayBePressed && rule_.arePressed(pair, *motion_)) return earliest_.considerPressed(name, pair);
-  if (certain) return earliest_.considerKnown(name, pair, *certain, doesBlock);
+  if (isCertain) return earliest_.considerKnown(name, pair, event, doesBlock);
   // Most pairs that touch at the start do not block, and that takes less time to decide than their contact.
   return doesBlock() && earliest_.consider(name, pair);
 }

@@ -137,6 +137,7 @@ class FirstContact final : public PairVisitor {
   const Query& query_;
   const Translation* motion_;  // past the current object
   PairRule rule_;
+  Certificate certificate_;
   exact::EarliestContact earliest_;              // of all objects, or of the current one if several are asked for
   std::vector<exact::EarliestContact> nearest_;  // one per object, earliest first
 };

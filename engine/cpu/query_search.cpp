@@ -96,12 +96,11 @@ struct QuerySearch::Flight {
     return query.clearance == 0 && !hasLists(query) && !turns(query) && Participants::areFew(query) &&
            batch.scene.meshes[query.mesh].parts.empty() && batch.tree.inRange();
   }
-  /// Takes a step of the walk, unless it has reached an object or is over.
+  /// Takes a step of the walk. Returns whether it goes on, since it has not reached an object yet.
   bool step() {
-    if (object != kNone || walk.isOver()) return false;
     object = walk.step(reach);
     if (object != kNone && !participants.contain(object)) object = kNone;
-    return true;
+    return object == kNone && !walk.isOver();
   }
 };
 
@@ -135,10 +134,21 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
   };
   for (bool isUnderWay = true; isUnderWay;) {
     isUnderWay = false;
-    for (size_t slot = 0; slot < kFlights; ++slot) isUnderWay |= begin(slot);
-    for (bool isWalking = true; isWalking;) {
-      isWalking = false;
-      for (std::optional<Flight>& flight : flights) isWalking |= flight && flight->step();
+    std::array<Flight*, kFlights> walking;
+    size_t count = 0;
+    for (size_t slot = 0; slot < kFlights; ++slot) {
+      if (!begin(slot)) continue;
+      isUnderWay = true;
+      walking[count++] = &*flights[slot];
+    }
+    while (count > 0) {
+      for (size_t i = 0; i < count;) {
+        if (walking[i]->step()) {
+          ++i;
+        } else {
+          walking[i] = walking[--count];
+        }
+      }
     }
     for (size_t slot = 0; slot < kFlights; ++slot) {
       std::optional<Flight>& flight = flights[slot];
@@ -146,7 +156,6 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
       if (flight->object != kNone) {
         search(flight->task, flight->object, flight->finder);
         flight->reach = reachOf(flight->finder, flight->task.motion);
-        flight->object = kNone;
       } else {
         Result& result = batch.results[flight->place];
         result = answerOf(flight->task, flight->finder, {}, nullptr);

@@ -48,13 +48,6 @@ Vector unit(int axis) {
   return v;
 }
 
-Triangle sorted(Triangle t) {
-  if (t[1] < t[0]) std::swap(t[0], t[1]);
-  if (t[2] < t[1]) std::swap(t[1], t[2]);
-  if (t[1] < t[0]) std::swap(t[0], t[1]);
-  return t;
-}
-
 struct FineParameter {
   DoubleDouble s;
   double error;
@@ -74,6 +67,13 @@ FineParameter fineParameter(const Event& e) {
 }
 
 }  // namespace
+
+Triangle sorted(Triangle t) {
+  if (t[1] < t[0]) std::swap(t[0], t[1]);
+  if (t[2] < t[1]) std::swap(t[1], t[2]);
+  if (t[1] < t[0]) std::swap(t[0], t[1]);
+  return t;
+}
 
 Event vertexFace(const Vector& direction, const Vector& a, const Triangle& b) {
   const Triangle f = sorted(b);

@@ -8,6 +8,8 @@
 
 namespace radar::exact {
 
+/// The corners in the order in which events have them.
+Triangle sorted(Triangle t);
 Event vertexFace(const Vector& direction, const Vector& a, const Triangle& b);
 Event faceVertex(const Vector& direction, const Triangle& a, const Vector& b);
 Event edgeEdge(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b0, const Vector& b1);

@@ -55,13 +55,17 @@ struct OpenNode {
 /// Memory of this thread for the nodes that a walk has yet to visit.
 std::vector<OpenNode>& openNodes();
 
-/// Prefetches the child nodes or the object of a node, because a scene's tree and objects do not fit a cache.
+/// Prefetches what is read first when the node is next: its child nodes, or the mask of its object.
 inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, const Scene::Impl& scene) {
   const uint32_t item = node.link & gpu::kLinkItem;
   const void* next = nodes + item;
-  if ((node.link & gpu::kLinkLeaf) != 0) next = &scene.objects[item];
-  // An object is in up to three lines; and so are nodes that come soon after.
-  for (const int line : {0, 64, 128}) __builtin_prefetch(static_cast<const char*>(next) + line);
+  if ((node.link & gpu::kLinkLeaf) != 0) next = &scene.objects[item].object.mask;
+  __builtin_prefetch(next);
+}
+/// Prefetches the lines beside that of the mask.
+inline void prefetch(const Scene::Impl::ObjectSlot& object) {
+  const char* const mask = reinterpret_cast<const char*>(&object.object.mask);
+  for (const int line : {-64, 64}) __builtin_prefetch(mask + line);
 }
 
 }  // namespace detail
@@ -87,7 +91,11 @@ class Walk {
     while (!isOver()) {
       const detail::OpenNode next = *--top_;
       if (next.near > reach) continue;
-      if ((next.link & gpu::kLinkLeaf) != 0) return next.link & gpu::kLinkItem;
+      if ((next.link & gpu::kLinkLeaf) != 0) {
+        const ObjectId object = next.link & gpu::kLinkItem;
+        detail::prefetch(scene_.objects[object]);
+        return object;
+      }
       const gpu::ObjectNode &left = nodes_[next.link], &right = nodes_[next.link + 1];
       detail::prefetch(left, nodes_, scene_);
       detail::prefetch(right, nodes_, scene_);

@@ -17,9 +17,6 @@ namespace {
 constexpr uint32_t kBins = 16;
 // Fewer items are not worth a thread, nor parts of their own.
 constexpr size_t kPart = 1u << 15;
-constexpr size_t kChunk = 8192;
-// The fourth numbers of an item hold its index, plus this: bits of a float that is neither subnormal nor NaN.
-constexpr uint32_t kIndex = 1u << 30;
 
 FourFloats loaded(const float (&from)[4]) {
   FourFloats out;
@@ -44,28 +41,13 @@ struct Growing {
 constexpr float kMost = std::numeric_limits<float>::max();
 constexpr Growing kNothing{{kMost, kMost, kMost, kMost}, {-kMost, -kMost, -kMost, -kMost}};
 
-struct alignas(32) Item {
-  Item() {}
-  Item(const FloatBox& box, uint32_t index) {
-    std::copy(box.lo.begin(), box.lo.end(), lo);
-    std::copy(box.hi.begin(), box.hi.end(), hi);
-    lo[3] = hi[3] = std::bit_cast<float>(kIndex + index);
-  }
-  uint32_t index() const { return std::bit_cast<uint32_t>(lo[3]) - kIndex; }
-  Growing extent() const { return {loaded(lo), loaded(hi)}; }
-  FourFloats middle() const { return 0.5f * loaded(lo) + 0.5f * loaded(hi); }
+Growing extentOf(const BoxedItem& item) {
+  return {loaded(item.lo), loaded(item.hi)};
+}
 
-  float lo[4], hi[4];
-};
-
-// Around boxes, and around their middles.
-struct Fit {
-  Growing boxes = kNothing, middles = kNothing;
-  void add(const Item& item) {
-    boxes.add(item.extent());
-    middles.add({item.middle(), item.middle()});
-  }
-};
+FourFloats middleOf(const BoxedItem& item) {
+  return 0.5f * loaded(item.lo) + 0.5f * loaded(item.hi);
+}
 
 struct Cut {
   int axis = -1;
@@ -95,8 +77,8 @@ class Binning {
 class Bins {
  public:
   Bins() { std::fill_n(bins_, kBins, kNothing); }
-  void add(uint32_t bin, const Item& item) {
-    bins_[bin].add(item.extent());
+  void add(uint32_t bin, const BoxedItem& item) {
+    bins_[bin].add(extentOf(item));
     ++counts_[bin];
     used_ |= 1u << bin;
   }
@@ -137,10 +119,10 @@ class Bins {
   uint32_t used_ = 0;  // one bit each
 };
 
-Cut bestCut(std::span<const Item> items, const Binning& binning) {
+Cut bestCut(std::span<const BoxedItem> items, const Binning& binning) {
   Bins bins[3];
-  for (const Item& item : items) {
-    const FourFloats middle = item.middle();
+  for (const BoxedItem& item : items) {
+    const FourFloats middle = middleOf(item);
     for (int k = 0; k < 3; ++k) bins[k].add(binning.binOf(middle, k), item);
   }
   Cut cut;
@@ -153,17 +135,12 @@ Cut bestCut(std::span<const Item> items, const Binning& binning) {
 
 class Builder {
  public:
-  Builder(std::vector<FloatBox> boxes, uint32_t leafSize, bool alone)
-      : items_(boxes.size()), leafSize_(leafSize), threads_(alone ? 1 : 0), part_(alone ? boxes.size() + 1 : kPart) {
-    parallelFor(boxes.size(), kChunk, threads_, [&](unsigned, size_t first, size_t last) {
-      for (size_t i = first; i < last; ++i) items_[i] = {boxes[i], static_cast<uint32_t>(i)};
-    });
-    boxes = std::vector<FloatBox>();  // not at the end of what calls this
-  }
+  Builder(std::span<BoxedItem> items, uint32_t leafSize, bool alone)
+      : items_(items), leafSize_(leafSize), part_(alone ? items.size() + 1 : kPart) {}
 
   BoxTree build() {
-    Range whole{0, items_.size(), {}};
-    for (const Item& item : items_) whole.fit.add(item);
+    Range whole{0, items_.size(), kNothing};
+    for (const BoxedItem& item : items_) whole.add(item);
     tree_.nodes.resize(2 * items_.size() - 1);
     build(whole, 0, 1, 1);
     std::ranges::sort(parts_, {}, &Part::first);
@@ -171,29 +148,22 @@ class Builder {
     size_t end = 1;
     settle(0, end, part);
     tree_.nodes.resize(end);
-    tree_.order.resize(items_.size());
-    parallelFor(items_.size(), kChunk, threads_, [&](unsigned, size_t first, size_t last) {
-      for (size_t i = first; i < last; ++i) tree_.order[i] = items_[i].index();
-    });
     return std::move(tree_);
   }
 
  private:
   struct Range {
     size_t first, count;
-    Fit fit;
+    Growing middles;  // around those of its boxes
+    void add(const BoxedItem& item) { middles.add({middleOf(item), middleOf(item)}); }
   };
   // The nodes below one that a single thread has built.
   struct Part {
     size_t first, last;
   };
 
-  BoxTree::Node nodeOf(const Range& range, size_t child) const {
-    const auto& [lo, hi] = range.fit.boxes;
-    return {{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}},
-            static_cast<uint32_t>(range.first),
-            static_cast<uint32_t>(range.count),
-            static_cast<uint32_t>(child)};
+  static BoxTree::Node nodeOf(const Range& range, size_t child) {
+    return {static_cast<uint32_t>(range.first), static_cast<uint32_t>(range.count), static_cast<uint32_t>(child)};
   }
 
   // Builds a node, and those below it in as many places as leaves of one item would take.
@@ -259,16 +229,16 @@ class Builder {
 
   // Sorts the items of a node into those of its children.
   std::array<Range, 2> split(const Range& range) {
-    const std::span<Item> items(items_.data() + range.first, range.count);
-    const Binning binning(range.fit.middles);
+    const std::span<BoxedItem> items = items_.subspan(range.first, range.count);
+    const Binning binning(range.middles);
     const Cut cut = bestCut(items, binning);
-    Fit left, right;
+    Range left{range.first, 0, kNothing}, right{range.first, 0, kNothing};
     size_t first = 0, last = items.size();
     if (cut.axis < 0) {  // all middles coincide: any halves will do
       while (first < items.size() / 2) left.add(items[first++]);
       for (size_t i = first; i < last; ++i) right.add(items[i]);
     } else {
-      const auto isLeft = [&](size_t i) { return binning.binOf(items[i].middle(), cut.axis) < cut.bin; };
+      const auto isLeft = [&](size_t i) { return binning.binOf(middleOf(items[i]), cut.axis) < cut.bin; };
       for (;;) {
         while (first < last && isLeft(first)) left.add(items[first++]);
         while (first < last && !isLeft(last - 1)) right.add(items[--last]);
@@ -278,12 +248,14 @@ class Builder {
         right.add(items[--last]);
       }
     }
-    return {Range{range.first, first, left}, Range{range.first + first, range.count - first, right}};
+    left.count = first;
+    right.first += first;
+    right.count = range.count - first;
+    return {left, right};
   }
 
-  UnwrittenVector<Item> items_;
+  const std::span<BoxedItem> items_;
   const uint32_t leafSize_;
-  const unsigned threads_;
   const size_t part_;  // nodes of fewer items are built with all below them
   BoxTree tree_;
   std::mutex mutex_;
@@ -292,8 +264,8 @@ class Builder {
 
 }  // namespace
 
-BoxTree buildBoxTree(std::vector<FloatBox> boxes, uint32_t leafSize, bool alone) {
-  return boxes.empty() ? BoxTree{} : Builder(std::move(boxes), leafSize, alone).build();
+BoxTree buildBoxTree(std::span<BoxedItem> items, uint32_t leafSize, bool alone) {
+  return items.empty() ? BoxTree{} : Builder(items, leafSize, alone).build();
 }
 
 }  // namespace radar

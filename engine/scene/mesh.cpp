@@ -36,55 +36,76 @@ double originOf(double lo, double hi) {
 class Derivation {
  public:
   explicit Derivation(Mesh& mesh)
-      : mesh_(mesh), perimeters_(mesh.triangleCount()), boxes_((perimeters_.size() + kChunk - 1) / kChunk) {
-    for (std::vector<float>& along : mesh.local) along.resize(mesh.vertexCount());
+      : mesh_(mesh), chunks_((mesh.triangleCount() + kChunk - 1) / kChunk), used_(mesh.vertexCount()) {
+    for (UnwrittenVector<float>& along : mesh.local) along.resize(mesh.vertexCount());
   }
 
   // `box`: the bounds within which a host may deform the mesh, or empty.
   void derive(Box box) {
-    parallelFor(perimeters_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-      Box& around = boxes_[first / kChunk];
-      around = {};
+    parallelFor(mesh_.triangleCount(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      Chunk chunk;
       for (size_t t = first; t < last; ++t) {
         const float* p[3];
         for (int i = 0; i < 3; ++i) {
-          // Vertices that no triangle uses must not widen the window.
-          p[i] = &mesh_.positions[3 * size_t{mesh_.indices[3 * t + i]}];
-          around.add({p[i][0], p[i][1], p[i][2]});
+          const uint32_t vertex = mesh_.indices[3 * t + i];
+          std::atomic_ref(used_[vertex]).store(1, std::memory_order_relaxed);  // several threads may write the same
+          p[i] = &mesh_.positions[3 * size_t{vertex}];
+          chunk.box.add({p[i][0], p[i][1], p[i][2]});
         }
-        perimeters_[t] = edgeLength(p[0], p[1]) + edgeLength(p[1], p[2]) + edgeLength(p[2], p[0]);
+        chunk.edges += edgeLength(p[0], p[1]) + edgeLength(p[1], p[2]) + edgeLength(p[2], p[0]);
       }
+      chunks_[first / kChunk] = chunk;
     });
-    for (const Box& around : boxes_) box.merge(around);
+    double edges = 0;
+    for (const Chunk& chunk : chunks_) {
+      box.merge(chunk.box);
+      edges += chunk.edges;
+    }
     setBox(mesh_, box);
-    double sum = 0;
-    for (const double perimeter : perimeters_) sum += perimeter;
-    mesh_.meanEdge = sum / static_cast<double>(mesh_.indices.size());
-    for (int k = 0; k < 3; ++k) std::ranges::fill(mesh_.local[k], localOf(mesh_.indices[0], k));
-    parallelFor(mesh_.indices.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-      for (size_t i = first; i < last; ++i) {
-        const uint32_t vertex = mesh_.indices[i];
-        for (int k = 0; k < 3; ++k) {  // several threads may write the same
-          std::atomic_ref(mesh_.local[k][vertex]).store(localOf(vertex, k), std::memory_order_relaxed);
-        }
+    mesh_.meanEdge = edges / static_cast<double>(mesh_.indices.size());
+    parallelFor(mesh_.vertexCount(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      for (size_t v = first; v < last; ++v) {
+        // Vertices that no triangle uses must not widen the window.
+        const float* p = &mesh_.positions[3 * (used_[v] != 0 ? v : mesh_.indices[0])];
+        for (int k = 0; k < 3; ++k) mesh_.local[k][v] = static_cast<float>(p[k] - mesh_.origin[k]);
       }
     });
   }
 
  private:
-  float localOf(uint32_t vertex, int axis) const {
-    return static_cast<float>(mesh_.positions[3 * size_t{vertex} + axis] - mesh_.origin[axis]);
-  }
+  struct Chunk {
+    Box box;
+    double edges = 0;  // the sum of their lengths
+  };
 
   Mesh& mesh_;
-  std::vector<double> perimeters_;  // of triangles
-  std::vector<Box> boxes_;          // of chunks of triangles
+  std::vector<Chunk> chunks_;  // of triangles
+  std::vector<uint8_t> used_;  // by a triangle, of vertices
 };
 
+// The first of `count` numbers that fails, or `count`.
+template <class Fails>
+size_t firstThat(size_t count, const Fails& fails) {
+  std::atomic<size_t> found = count;
+  parallelFor(count, 8 * kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    while (first < last && !fails(first)) ++first;
+    for (size_t least = found; first < last && first < least && !found.compare_exchange_weak(least, first);) {
+    }
+  });
+  return found;
+}
+
 void requireFinite(const std::string& where, std::span<const float> positions) {
-  for (size_t i = 0; i < positions.size(); ++i) {
-    if (!std::isfinite(positions[i])) throw Error(where + ": vertex " + std::to_string(i / 3) + " is not finite");
-  }
+  const size_t i = firstThat(positions.size(), [&](size_t at) { return !std::isfinite(positions[at]); });
+  if (i < positions.size()) throw Error(where + ": vertex " + std::to_string(i / 3) + " is not finite");
+}
+
+template <class Value>
+void copyTo(UnwrittenVector<Value>& to, std::span<const Value> from) {
+  to.resize(from.size());
+  parallelFor(from.size(), 8 * kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    std::copy(from.begin() + first, from.begin() + last, to.begin() + first);
+  });
 }
 
 // The bounds within which a host may deform the mesh, and its rest pose.
@@ -155,21 +176,20 @@ Mesh makeMesh(std::span<const float> positions, std::span<const uint32_t> indice
   requireAtMost("addMesh", "vertices", positions.size() / 3, kMostVertices);
   requireAtMost("addMesh", "triangles", indices.size() / 3, kMostItems);
   requireFinite("addMesh: positions", positions);
-  for (size_t i = 0; i < positions.size(); ++i) {
-    if (bounds && std::abs(positions[i]) > kMostBound) {
+  for (size_t i = 0; bounds && i < positions.size(); ++i) {
+    if (std::abs(positions[i]) > kMostBound) {
       throw Error("addMesh: positions: vertex " + std::to_string(i / 3) +
                   " of a mesh with bounds: expected coordinates of at most 2^120");
     }
   }
-  for (size_t i = 0; i < indices.size(); ++i) {
-    if (indices[i] >= positions.size() / 3) {
-      throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " refers to vertex " +
-                  std::to_string(indices[i]) + " of " + std::to_string(positions.size() / 3));
-    }
+  const size_t wrong = firstThat(indices.size(), [&](size_t i) { return indices[i] >= positions.size() / 3; });
+  if (wrong < indices.size()) {
+    throw Error("addMesh: indices: triangle " + std::to_string(wrong / 3) + " refers to vertex " +
+                std::to_string(indices[wrong]) + " of " + std::to_string(positions.size() / 3));
   }
   Mesh mesh;
-  mesh.positions.assign(positions.begin(), positions.end());
-  mesh.indices.assign(indices.begin(), indices.end());
+  copyTo(mesh.positions, positions);
+  copyTo(mesh.indices, indices);
   mesh.used = true;
   mesh.hasBounds = bounds.has_value();
   Box box;
@@ -194,7 +214,7 @@ void movePositions(Mesh& mesh, std::span<const float> positions) {
   const Box bounds = mesh.hasBounds ? boundsOf(mesh) : Box{};
   Derivation derivation(mesh);
   refitMeshTree(mesh, mesh.tree, [&] {
-    std::copy(positions.begin(), positions.end(), mesh.positions.begin());  // in place: a MeshView shows them
+    copyTo(mesh.positions, positions);  // in place: a MeshView shows them
     derivation.derive(bounds);
   });
 }

@@ -21,8 +21,8 @@ namespace radar {
 inline constexpr size_t kMostItems = size_t{1} << 29;
 
 struct Mesh {
-  std::vector<float> positions;
-  std::vector<uint32_t> indices;
+  UnwrittenVector<float> positions;
+  UnwrittenVector<uint32_t> indices;
   bool used = false;
   std::vector<RingHull> parts;   ///< of a cutter, which its triangles only show; else empty
   bool hasBounds = false;        ///< declared, within which a host may move its vertices
@@ -36,7 +36,7 @@ struct Mesh {
   /// precision. The origin's components are floats that make this difference exact: 0 on axes where the mesh spans or
   /// is near 0, its middle on the others. One array per axis, so that loops over vertices vectorise.
   Vector origin{};
-  std::array<std::vector<float>, 3> local;
+  std::array<UnwrittenVector<float>, 3> local;
   Vector farthest{};             ///< greatest |coordinate|, declared bounds included
   Box box;                       ///< of local vertices, declared bounds included
   std::array<float, 3> reach{};  ///< greatest |coordinate| in the box

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <new>
+#include <span>
 #include <utility>
 
 #include "math/lanes.h"
@@ -228,26 +230,35 @@ class Fitter {
   std::vector<PartFitter> fitters_;
 };
 
-std::vector<FloatBox> boxesOfTriangles(const Mesh& mesh) {
-  std::vector<FloatBox> boxes(mesh.triangleCount());
-  parallelFor(boxes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+// The boxes of a mesh's triangles, for the time of the build, where their corners will be.
+std::span<BoxedItem> boxesOfTriangles(const Mesh& mesh, std::span<float> corners) {
+  void* memory = corners.data();
+  size_t bytes = corners.size_bytes();
+  const size_t count = mesh.triangleCount();
+  auto* const boxes = static_cast<BoxedItem*>(std::align(alignof(BoxedItem), count * sizeof(BoxedItem), memory, bytes));
+  parallelFor(count, kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t t = first; t < last; ++t) {
-      float corners[9];
-      for (int i = 0; i < 9; ++i) corners[i] = mesh.normalised(mesh.indices[3 * t + i / 3], i % 3);
-      boxes[t] = boxAround(corners, 3);
+      float points[9];
+      for (int i = 0; i < 9; ++i) points[i] = mesh.normalised(mesh.indices[3 * t + i / 3], i % 3);
+      new (&boxes[t]) BoxedItem(boxAround(points, 3), static_cast<uint32_t>(t));
     }
   });
-  return boxes;
+  return {boxes, count};
 }
 
 }  // namespace
 
 MeshTree buildMeshTree(const Mesh& mesh) {
   MeshTree tree;
+  tree.corners.resize(9 * size_t{mesh.triangleCount()} + MeshTree::kPadding);
   {
-    BoxTree from = buildBoxTree(boxesOfTriangles(mesh), kLeafTriangles);
-    tree.order = std::move(from.order);
+    const std::span<BoxedItem> items = boxesOfTriangles(mesh, tree.corners);
+    const BoxTree from = buildBoxTree(items, kLeafTriangles);
     tree.depth = from.depth;
+    tree.order.resize(items.size());
+    parallelFor(items.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      for (size_t i = first; i < last; ++i) tree.order[i] = items[i].index();
+    });
     tree.nodes.resize(from.nodes.size());
     tree.below.resize(from.nodes.size());
     parallelFor(from.nodes.size(), kChunk, 0, [&](unsigned, size_t begin, size_t end) {
@@ -259,7 +270,6 @@ MeshTree buildMeshTree(const Mesh& mesh) {
       }
     });
   }
-  tree.corners.resize(9 * tree.order.size() + MeshTree::kPadding);
   std::fill_n(tree.corners.end() - MeshTree::kPadding, MeshTree::kPadding, 0.0f);
   tree.builtCost = Fitter(tree).fit(mesh);
   return tree;

@@ -20,7 +20,7 @@ inline bool isLeaf(const gpu::MeshNode& node) {
 /// In normalised local coordinates (Mesh::local, Mesh::unit).
 struct MeshTree {
   NodeVector<gpu::MeshNode> nodes;       ///< links are relative to the mesh's first node, or to its start in `order`
-  std::vector<uint32_t> order;           ///< triangle ids, leaf by leaf, so neighbours in space are close
+  UnwrittenVector<uint32_t> order;       ///< triangle ids, leaf by leaf, so neighbours in space are close
   UnwrittenVector<float> corners;        ///< of the triangles in this order: x, y, z of each corner; then kPadding more
   static constexpr size_t kPadding = 3;  ///< so that vectors of four may be loaded
   /// The range of `order` below a node, and its least triangle id.

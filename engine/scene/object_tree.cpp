@@ -242,18 +242,23 @@ void ObjectTree::build(const Scene::Impl& scene) {
   edits_ = 0;
   if (ids.empty() || !inRange_) return;
   for (int k = 0; k < 3; ++k) anchor_[k] = world_.middle(k);
-  std::vector<FloatBox> boxes(ids.size());
+  UnwrittenVector<BoxedItem> items(ids.size());
   parallelFor(ids.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) boxes[i] = floatBox(objectBox(scene, ids[i]), anchor_);
+    for (size_t i = first; i < last; ++i) items[i] = {floatBox(objectBox(scene, ids[i]), anchor_), ids[i]};
   });
-  const BoxTree tree = buildBoxTree(std::move(boxes), 1);
+  const BoxTree tree = buildBoxTree(items, 1);
   nodes_.resize(tree.nodes.size());
   parents_.assign(nodes_.size(), kNone);
+  UnwrittenVector<FloatBox> boxes(nodes_.size());
+  for (size_t i = nodes_.size(); i-- > 0;) {
+    const BoxTree::Node& from = tree.nodes[i];
+    boxes[i] = from.child == 0 ? items[from.first].box() : around(boxes[from.child], boxes[from.child + 1]);
+  }
   parallelFor(nodes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
       const BoxTree::Node& from = tree.nodes[i];
-      nodes_[i] = {.link = from.child != 0 ? from.child : gpu::kLinkLeaf | ids[tree.order[from.first]]};
-      fitBox(from.box, nodes_[i].centre, nodes_[i].halfExtent);
+      nodes_[i] = {.link = from.child != 0 ? from.child : gpu::kLinkLeaf | items[from.first].index()};
+      fitBox(boxes[i], nodes_[i].centre, nodes_[i].halfExtent);
       adopt(static_cast<uint32_t>(i));
     }
   });

@@ -145,18 +145,16 @@ size_t testsOf(const ObjectNodes& nodes, double distance) {
 
 ObjectNodes rebuilt(const ObjectNodes& nodes) {
   const std::map<ObjectId, gpu::ObjectNode> leaves = leavesOf(nodes);
-  std::vector<FloatBox> boxes;
-  std::vector<ObjectId> objects;
-  for (const auto& [object, leaf] : leaves) {
-    boxes.push_back(boxOf(leaf));
-    objects.push_back(object);
-  }
-  const BoxTree tree = buildBoxTree(boxes, 1);
+  std::vector<BoxedItem> items;
+  for (const auto& [object, leaf] : leaves) items.push_back({boxOf(leaf), object});
+  const BoxTree tree = buildBoxTree(items, 1);
   ObjectNodes built(tree.nodes.size());
-  for (size_t i = 0; i < built.size(); ++i) {
-    const BoxTree::Node& from = tree.nodes[i];
-    fitBox(from.box, built[i].centre, built[i].halfExtent);
-    built[i].link = from.child != 0 ? from.child : gpu::kLinkLeaf | objects[tree.order[from.first]];
+  std::vector<FloatBox> boxes(built.size());
+  for (size_t i = built.size(); i-- > 0;) {
+    const auto [first, count, child] = tree.nodes[i];
+    boxes[i] = child == 0 ? items[first].box() : around(boxes[child], boxes[child + 1]);
+    fitBox(boxes[i], built[i].centre, built[i].halfExtent);
+    built[i].link = child != 0 ? child : gpu::kLinkLeaf | items[first].index();
   }
   return built;
 }

@@ -103,7 +103,7 @@ struct Walk {
 void checkTree(const Mesh& mesh) {
   const uint32_t count = mesh.triangleCount();
   REQUIRE(mesh.tree.order.size() == count);
-  std::vector<uint32_t> sorted = mesh.tree.order;
+  auto sorted = mesh.tree.order;
   std::sort(sorted.begin(), sorted.end());
   for (uint32_t i = 0; i < count; ++i) REQUIRE(sorted[i] == i);
   Walk walk{mesh};
@@ -252,7 +252,7 @@ TEST_CASE("moved vertices keep their tree while it serves, and a tree that has b
     Scene scene;
     const MeshId id = scene.addMesh(data.positions, data.indices);
     const Mesh& mesh = scene.impl().meshes[id];
-    const std::vector<uint32_t> order = mesh.tree.order;
+    const auto order = mesh.tree.order;
     // Bent a little and far away at another size, or with every vertex in the place of another.
     if (scrambles) {
       for (size_t i = data.positions.size() / 3; i > 1; --i) {

@@ -1,6 +1,7 @@
 #include "scene/box_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -15,6 +16,7 @@ namespace radar {
 namespace {
 
 constexpr uint32_t kBins = 16;
+constexpr size_t kFew = 16;
 // Fewer items are not worth a thread, nor parts of their own.
 constexpr size_t kPart = 1u << 15;
 
@@ -59,28 +61,44 @@ class Binning {
  public:
   explicit Binning(const Growing& middles) {
     for (int k = 0; k < 3; ++k) {
-      first_[k] = middles.lo[k];
       const double width = double(middles.hi[k]) - middles.lo[k];
-      scale_[k] = width > 0 ? kBins / width : 0;
+      first_[k / 2][k % 2] = middles.lo[k];
+      scale_[k / 2][k % 2] = width > 0 ? kBins / width : 0;
     }
   }
-  bool spreads(int axis) const { return scale_[axis] > 0; }
-  uint32_t binOf(const FourFloats& middle, int axis) const {
-    return std::min(kBins - 1, static_cast<uint32_t>((double(middle[axis]) - first_[axis]) * scale_[axis]));
+  bool spreads(int axis) const { return scale_[axis / 2][axis % 2] > 0; }
+  // Along each axis.
+  std::array<uint32_t, 3> binsOf(const FourFloats& middle) const {
+    const HalfOfDoubles xy = (HalfOfDoubles{middle[0], middle[1]} - first_[0]) * scale_[0];
+    const double z = (double(middle[2]) - first_[1][0]) * scale_[1][0];
+    const auto limited = [](double place) { return std::min(kBins - 1, static_cast<uint32_t>(place)); };
+    return {limited(xy[0]), limited(xy[1]), limited(z)};
+  }
+  // Whether an item's bin is before that of a cut.
+  bool isLeft(const BoxedItem& item, const Cut& cut) const {
+    const int k = cut.axis;
+    return (double(0.5f * item.lo[k] + 0.5f * item.hi[k]) - first_[k / 2][k % 2]) * scale_[k / 2][k % 2] < cut.bin;
   }
 
  private:
-  double first_[3], scale_[3];
+  HalfOfDoubles first_[2], scale_[2];
 };
 
 // The items of each bin along an axis.
 class Bins {
  public:
-  Bins() { std::fill_n(bins_, kBins, kNothing); }
+  // Before the first is added to it.
+  void clear(uint32_t bin) {
+    bins_[bin] = kNothing;
+    counts_[bin] = 0;
+    used_ |= 1u << bin;
+  }
   void add(uint32_t bin, const BoxedItem& item) {
     bins_[bin].add(extentOf(item));
     ++counts_[bin];
-    used_ |= 1u << bin;
+  }
+  void dropEmpty() {
+    for (uint32_t bin = 0; bin < kBins; ++bin) used_ &= ~((counts_[bin] == 0 ? 1u : 0u) << bin);
   }
 
   // The cut with the least sum of (area times number of items) over both sides, if that is below `least`.
@@ -115,15 +133,30 @@ class Bins {
   }
 
   Growing bins_[kBins];
-  uint32_t counts_[kBins] = {};
+  uint32_t counts_[kBins];
   uint32_t used_ = 0;  // one bit each
 };
 
 Cut bestCut(std::span<const BoxedItem> items, const Binning& binning) {
   Bins bins[3];
-  for (const BoxedItem& item : items) {
-    const FourFloats middle = middleOf(item);
-    for (int k = 0; k < 3; ++k) bins[k].add(binning.binOf(middle, k), item);
+  if (items.size() <= kFew) {
+    std::array<uint32_t, 3> at[kFew];
+    for (size_t i = 0; i < items.size(); ++i) {
+      at[i] = binning.binsOf(middleOf(items[i]));
+      for (int k = 0; k < 3; ++k) bins[k].clear(at[i][k]);
+    }
+    for (size_t i = 0; i < items.size(); ++i) {
+      for (int k = 0; k < 3; ++k) bins[k].add(at[i][k], items[i]);
+    }
+  } else {
+    for (uint32_t bin = 0; bin < kBins; ++bin) {
+      for (Bins& along : bins) along.clear(bin);
+    }
+    for (const BoxedItem& item : items) {
+      const std::array<uint32_t, 3> at = binning.binsOf(middleOf(item));
+      for (int k = 0; k < 3; ++k) bins[k].add(at[k], item);
+    }
+    for (Bins& along : bins) along.dropEmpty();
   }
   Cut cut;
   double least = std::numeric_limits<double>::infinity();
@@ -238,7 +271,7 @@ class Builder {
       while (first < items.size() / 2) left.add(items[first++]);
       for (size_t i = first; i < last; ++i) right.add(items[i]);
     } else {
-      const auto isLeft = [&](size_t i) { return binning.binOf(middleOf(items[i]), cut.axis) < cut.bin; };
+      const auto isLeft = [&](size_t i) { return binning.isLeft(items[i], cut); };
       for (;;) {
         while (first < last && isLeft(first)) left.add(items[first++]);
         while (first < last && !isLeft(last - 1)) right.add(items[--last]);

@@ -20,11 +20,13 @@ namespace {
 
 // Searches were slower with leaves of one triangle, and of four.
 constexpr uint32_t kLeafTriangles = 2;
-// Larger nodes have no slab along their normal: they are rarely flat, and each level costs a pass over all vertices.
+// Larger nodes have no slab along their normal: they are rarely flat, and each
+// level costs a pass over all vertices.
 constexpr uint32_t kSlabTriangles = 1024;
 constexpr size_t kChunk = 4096;
 
-// A tree is built anew once refitting has made its cost this many times that after it was built.
+// A tree is built anew once refitting has made its cost this many times that
+// after it was built.
 constexpr double kRebuildAt = 2.0;
 
 FloatBox boxAround(const float* points, uint32_t count) {
@@ -43,7 +45,8 @@ double halfArea(const FloatBox& box) {
   return x * y + y * z + z * x;
 }
 
-// A node of at most kSlabTriangles, and those below it: first to last - 1. Or a larger node alone, which holds such.
+// A node of at most kSlabTriangles, and those below it: first to last - 1. Or a
+// larger node alone, which holds such.
 struct Part {
   uint32_t node, first, last;
   uint32_t above;  ///< the part of the node above
@@ -52,7 +55,8 @@ struct Part {
 // Fits parts of a tree, one after another. Nothing but its construction throws.
 class PartFitter {
  public:
-  explicit PartFitter(size_t mostTriangles) : boxes_(2 * mostTriangles), normals_(mostTriangles) {
+  explicit PartFitter(size_t mostTriangles)
+      : boxes_(2 * mostTriangles), sums_(2 * mostTriangles), normals_(mostTriangles) {
     for (std::vector<double>& along : corners_) along.resize(3 * mostTriangles);
   }
 
@@ -60,23 +64,33 @@ class PartFitter {
   FloatBox fit(MeshTree& tree, const Part& part, double& areas) {
     const MeshTree::Below& all = tree.below[part.node];
     load(&tree.corners[9 * size_t{all.first}], all.count);
-    const auto fitNode = [&](uint32_t i, FloatBox& box) {
+    const auto fitNode = [&](uint32_t i, uint32_t place) {
+      FloatBox& box = boxes_[place];
+      Vector& sum = sums_[place];
+      uint32_t rest;  // the first triangle whose normal the sum lacks
       gpu::MeshNode& node = tree.nodes[i];
       MeshTree::Below& below = tree.below[i];
       if (isLeaf(node)) {
         box = boxAround(&tree.corners[9 * size_t{below.first}], 3 * below.count);
         below.least = std::min(tree.order[below.first], tree.order[below.first + below.count - 1]);
+        sum = {};
+        rest = below.first;
       } else {
-        const FloatBox* const children = &boxes_[node.link - part.first];
-        box = around(children[0], children[1]);
+        const uint32_t left = node.link - part.first;
+        box = around(boxes_[left], boxes_[left + 1]);
+        sum = sums_[left];
+        rest = tree.below[node.link + 1].first;
         below.least = std::min(tree.below[node.link].least, tree.below[node.link + 1].least);
       }
       areas += halfArea(box);
       fitBox(box, node.centre, node.halfExtent);
-      fitSlab(node, below.first - all.first, below.count);
+      for (uint32_t t = rest - all.first; t < below.first - all.first + below.count; ++t) {
+        for (int k = 0; k < 3; ++k) sum[k] += normals_[t][k];
+      }
+      fitSlab(node, sum, below.first - all.first, below.count);
     };
-    for (uint32_t i = part.last; i-- > part.first;) fitNode(i, boxes_[i - part.first]);
-    fitNode(part.node, boxes_.back());
+    for (uint32_t i = part.last; i-- > part.first;) fitNode(i, i - part.first);
+    fitNode(part.node, static_cast<uint32_t>(boxes_.size() - 1));
     return boxes_.back();
   }
 
@@ -95,15 +109,14 @@ class PartFitter {
     }
   }
 
-  // The slab along the triangles' mean normal. Any normal would be valid; this one gives a thin slab.
-  void fitSlab(gpu::MeshNode& node, uint32_t first, uint32_t count) const {
+  // The slab along the triangles' mean normal. Any normal would be valid; this
+  // one gives a thin slab.
+  void fitSlab(gpu::MeshNode& node, const Vector& sum, uint32_t first, uint32_t count) const {
     node.normal[0] = node.normal[1] = node.normal[2] = node.slabMiddle = node.slabHalf = 0;
-    Vector sum{};
-    for (uint32_t t = first; t < first + count; ++t) {
-      for (int k = 0; k < 3; ++k) sum[k] += normals_[t][k];
-    }
     const double length = std::hypot(sum[0], sum[1], sum[2]);
-    if (!(length > 0)) return;  // a slab whose normal, middle and half extent are 0 holds every vertex
+    if (!(length > 0))
+      return;  // a slab whose normal, middle and half extent are 0 holds every
+               // vertex
     for (int k = 0; k < 3; ++k) {
       // A device may flush a subnormal number in one use, but not in another.
       const auto component = static_cast<float>(sum[k] / length);
@@ -123,12 +136,9 @@ class PartFitter {
     double least = at(first), most = least;
     size_t i = first + 1;
     if (last - first >= 2 * kLanes) {
-      LaneVec<double> n;
-      for (int k = 0; k < 3; ++k) n[k] = double{normal[k]};
+      const LaneVec<double> n{double{normal[0]}, double{normal[1]}, double{normal[2]}};
       const auto lanesAt = [&](size_t from) {
-        LaneVec<double> p;
-        for (int k = 0; k < 3; ++k) p[k] = loaded(&corners_[k][from]);
-        return dot(n, p);
+        return n[0] * loaded(&x[from]) + n[1] * loaded(&y[from]) + n[2] * loaded(&z[from]);
       };
       Lanes<double> low = lanesAt(first), high = low;
       for (i = first + kLanes; i + kLanes <= last; i += kLanes) {
@@ -155,11 +165,13 @@ class PartFitter {
   }
 
   std::vector<FloatBox> boxes_;                 // of the nodes below the part's, which has the last
+  std::vector<Vector> sums_;                    // of their triangles' normals
   std::array<std::vector<double>, 3> corners_;  // by axis
   std::vector<Vector> normals_;                 // of triangles, twice as long as their area
 };
 
-// Fits a tree to the corners of its triangles. Nothing but its construction throws.
+// Fits a tree to the corners of its triangles. Nothing but its construction
+// throws.
 class Fitter {
  public:
   explicit Fitter(MeshTree& tree) : tree_(tree) {
@@ -171,7 +183,8 @@ class Fitter {
     fitters_.assign(std::min<size_t>(threadCount(0), parts_.size()), PartFitter(most));
   }
 
-  // Returns how many nodes a random line through the root meets, by the areas of their boxes.
+  // Returns how many nodes a random line through the root meets, by the areas
+  // of their boxes.
   double fit(const Mesh& mesh) {
     parallelFor(tree_.order.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
       float* to = &tree_.corners[9 * first];
@@ -230,7 +243,8 @@ class Fitter {
   std::vector<PartFitter> fitters_;
 };
 
-// The boxes of a mesh's triangles, for the time of the build, where their corners will be.
+// The boxes of a mesh's triangles, for the time of the build, where their
+// corners will be.
 std::span<BoxedItem> boxesOfTriangles(const Mesh& mesh, std::span<float> corners) {
   void* memory = corners.data();
   size_t bytes = corners.size_bytes();

@@ -7,6 +7,8 @@
 #include <limits>
 #include <mutex>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "math/lanes.h"
 #include "scene/parallel.h"
@@ -18,7 +20,7 @@ namespace {
 constexpr uint32_t kBins = 16;
 constexpr size_t kFew = 16;
 // Fewer items are not worth a thread, nor parts of their own.
-constexpr size_t kPart = 1u << 15;
+constexpr size_t kPart = 1u << 13;
 
 FourFloats loaded(const float (&from)[4]) {
   FourFloats out;
@@ -172,12 +174,22 @@ class Builder {
       : items_(items), leafSize_(leafSize), part_(alone ? items.size() + 1 : kPart) {}
 
   BoxTree build() {
-    Range whole{0, items_.size(), kNothing};
-    for (const BoxedItem& item : items_) whole.add(item);
     tree_.nodes.resize(2 * items_.size() - 1);
-    build(whole, 0, 1, 1);
-    std::ranges::sort(parts_, {}, &Part::first);
-    const Part* part = parts_.data();
+    std::vector<Part> large, parts;
+    const auto list = [&](const Part& part) { (part.range.count < part_ ? parts : large).push_back(part); };
+    list({whole(), 0, 1, 1, 1});
+    while (!large.empty()) {
+      const std::vector<Part> level = std::exchange(large, {});
+      std::vector<std::array<Part, 2>> sides(level.size());
+      parallelFor(level.size(), 1, 0, [&](unsigned, size_t i, size_t) { sides[i] = divided(level[i]); });
+      for (const auto& [left, right] : sides) {
+        list(left);
+        list(right);
+      }
+    }
+    parallelFor(parts.size(), 1, 0, [&](unsigned, size_t i, size_t) { build(parts[i]); });
+    std::ranges::sort(parts, {}, &Part::first);
+    const Part* part = parts.data();
     size_t end = 1;
     settle(0, end, part);
     tree_.nodes.resize(end);
@@ -190,41 +202,49 @@ class Builder {
     Growing middles;  // around those of its boxes
     void add(const BoxedItem& item) { middles.add({middleOf(item), middleOf(item)}); }
   };
-  // The nodes below one that a single thread has built.
+  // A node, and the places of those below it, as many as leaves of one item would take.
   struct Part {
-    size_t first, last;
+    Range range;
+    size_t node, first, last;
+    uint32_t depth;  ///< of the node; then of the deepest below it
   };
+
+  Range whole() const {
+    Range all{0, items_.size(), kNothing};
+    std::mutex merging;
+    parallelFor(items_.size(), part_, 0, [&](unsigned, size_t first, size_t last) {
+      Range some{first, last - first, kNothing};
+      for (size_t i = first; i < last; ++i) some.add(items_[i]);
+      const std::scoped_lock lock(merging);
+      all.middles.add(some.middles);
+    });
+    return all;
+  }
 
   static BoxTree::Node nodeOf(const Range& range, size_t child) {
     return {static_cast<uint32_t>(range.first), static_cast<uint32_t>(range.count), static_cast<uint32_t>(child)};
   }
 
-  // Builds a node, and those below it in as many places as leaves of one item would take.
-  void build(const Range& range, size_t node, size_t below, uint32_t depth) {
-    if (range.count < part_) {
-      buildPart(range, node, below, depth);
-      return;
-    }
-    tree_.nodes[node] = nodeOf(range, below);
-    const std::array<Range, 2> sides = split(range);
-    parallelFor(2, 1, std::min(2u, threadCount(0)), [&](unsigned, size_t side, size_t) {
-      build(sides[side], below + side, side == 0 ? below + 2 : below + 2 * sides[0].count, depth + 1);
-    });
+  std::array<Part, 2> divided(const Part& part) {
+    const size_t child = part.first;
+    tree_.nodes[part.node] = nodeOf(part.range, child);
+    const auto [left, right] = split(part.range);
+    const size_t middle = child + 2 * left.count;
+    return {Part{left, child, child + 2, child + 2, part.depth + 1},
+            {right, child + 1, middle, middle, part.depth + 1}};
   }
 
-  void buildPart(const Range& range, size_t node, size_t below, uint32_t depth) {
+  void build(Part& part) {
     struct Open {
       size_t node;
       uint32_t depth;
       Range range;
     };
-    Part part{below, below};
-    uint32_t deepest = 0;
-    std::vector<Open> open{{node, depth, range}};
+    std::vector<Open> open{{part.node, part.depth, part.range}};
     while (!open.empty()) {
       const Open next = open.back();
       open.pop_back();
-      deepest = std::max(deepest, next.depth);
+      part.depth = std::max(part.depth, next.depth);
       const bool isLeaf = next.range.count <= leafSize_;
       tree_.nodes[next.node] = nodeOf(next.range, isLeaf ? 0 : part.last);
       if (isLeaf) continue;
@@ -232,9 +252,6 @@ class Builder {
       for (const size_t side : {1, 0}) open.push_back({part.last + side, next.depth + 1, sides[side]});
       part.last += 2;
     }
-    const std::scoped_lock lock(mutex_);
-    tree_.depth = std::max(tree_.depth, deepest);
-    parts_.push_back(part);
   }
 
   // Moves the nodes below one to `end`.
@@ -249,7 +266,8 @@ class Builder {
       settle(child + 1, end, part);
       return;
     }
-    const auto [first, last] = *part++;
+    const size_t first = part->first, last = part->last;
+    tree_.depth = std::max(tree_.depth, part++->depth);
     const auto gap = static_cast<uint32_t>(first - end);
     if (gap != 0) {
       std::copy(nodes + first, nodes + last, nodes + end);
@@ -291,8 +309,6 @@ class Builder {
   const uint32_t leafSize_;
   const size_t part_;  // nodes of fewer items are built with all below them
   BoxTree tree_;
-  std::mutex mutex_;
-  std::vector<Part> parts_;
 };
 
 }  // namespace

@@ -20,24 +20,22 @@ namespace {
 
 // Searches were slower with leaves of one triangle, and of four.
 constexpr uint32_t kLeafTriangles = 2;
-// Larger nodes have no slab along their normal: they are rarely flat, and each
-// level costs a pass over all vertices.
+// Larger nodes have no slab along their normal: they are rarely flat, and each level costs a pass over all vertices.
 constexpr uint32_t kSlabTriangles = 1024;
 constexpr size_t kChunk = 4096;
 
-// A tree is built anew once refitting has made its cost this many times that
-// after it was built.
+// A tree is built anew once refitting has made its cost this many times that after it was built.
 constexpr double kRebuildAt = 2.0;
 
-FloatBox boxAround(const float* points, uint32_t count) {
-  FloatBox box{{points[0], points[1], points[2]}, {points[0], points[1], points[2]}};
-  for (const float* p = points + 3; p != points + 3 * size_t{count}; p += 3) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
-    }
+template <class PointAt>
+FloatBox boxAround(uint32_t count, const PointAt& pointAt) {
+  FourFloats lo = pointAt(0), hi = lo;
+  for (uint32_t i = 1; i < count; ++i) {
+    const FourFloats next = pointAt(i);
+    lo = next < lo ? next : lo;
+    hi = next > hi ? next : hi;
   }
-  return box;
+  return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
 }
 
 double halfArea(const FloatBox& box) {
@@ -45,8 +43,7 @@ double halfArea(const FloatBox& box) {
   return x * y + y * z + z * x;
 }
 
-// A node of at most kSlabTriangles, and those below it: first to last - 1. Or a
-// larger node alone, which holds such.
+// A node of at most kSlabTriangles, and those below it: first to last - 1. Or a larger node alone, which holds such.
 struct Part {
   uint32_t node, first, last;
   uint32_t above;  ///< the part of the node above
@@ -57,21 +54,30 @@ class PartFitter {
  public:
   explicit PartFitter(size_t mostTriangles)
       : boxes_(2 * mostTriangles), sums_(2 * mostTriangles), normals_(mostTriangles) {
-    for (std::vector<double>& along : corners_) along.resize(3 * mostTriangles);
+    for (std::vector<double>& along : corners_) along.resize(3 * mostTriangles + 1);
   }
 
   // Returns the box; adds the areas of all nodes.
   FloatBox fit(MeshTree& tree, const Part& part, double& areas) {
     const MeshTree::Below& all = tree.below[part.node];
     load(&tree.corners[9 * size_t{all.first}], all.count);
-    const auto fitNode = [&](uint32_t i, uint32_t place) {
+    const auto forNodes = [&](const auto& work) {
+      for (uint32_t i = part.last; i-- > part.first;) work(i, i - part.first);
+      work(part.node, static_cast<uint32_t>(boxes_.size() - 1));
+    };
+    forNodes([&](uint32_t i, uint32_t place) {
       FloatBox& box = boxes_[place];
       Vector& sum = sums_[place];
       uint32_t rest;  // the first triangle whose normal the sum lacks
       gpu::MeshNode& node = tree.nodes[i];
       MeshTree::Below& below = tree.below[i];
       if (isLeaf(node)) {
-        box = boxAround(&tree.corners[9 * size_t{below.first}], 3 * below.count);
+        const float* const corners = &tree.corners[9 * size_t{below.first}];
+        box = boxAround(3 * below.count, [&](uint32_t at) {
+          FourFloats corner;
+          std::memcpy(&corner, corners + 3 * size_t{at}, sizeof(corner));
+          return corner;
+        });
         below.least = std::min(tree.order[below.first], tree.order[below.first + below.count - 1]);
         sum = {};
         rest = below.first;
@@ -87,10 +93,11 @@ class PartFitter {
       for (uint32_t t = rest - all.first; t < below.first - all.first + below.count; ++t) {
         for (int k = 0; k < 3; ++k) sum[k] += normals_[t][k];
       }
-      fitSlab(node, sum, below.first - all.first, below.count);
-    };
-    for (uint32_t i = part.last; i-- > part.first;) fitNode(i, i - part.first);
-    fitNode(part.node, static_cast<uint32_t>(boxes_.size() - 1));
+    });
+    // One after another, what a node's steps wait for would add up.
+    forNodes([&](uint32_t i, uint32_t place) { setNormal(tree.nodes[i], sums_[place]); });
+    forNodes(
+        [&](uint32_t i, uint32_t) { fitSlab(tree.nodes[i], tree.below[i].first - all.first, tree.below[i].count); });
     return boxes_.back();
   }
 
@@ -109,19 +116,20 @@ class PartFitter {
     }
   }
 
-  // The slab along the triangles' mean normal. Any normal would be valid; this
-  // one gives a thin slab.
-  void fitSlab(gpu::MeshNode& node, const Vector& sum, uint32_t first, uint32_t count) const {
-    node.normal[0] = node.normal[1] = node.normal[2] = node.slabMiddle = node.slabHalf = 0;
+  // Any normal would be valid; the triangles' mean gives a thin slab. It is 0 if there is none: a slab whose normal,
+  // middle and half extent are 0 holds every vertex.
+  static void setNormal(gpu::MeshNode& node, const Vector& sum) {
     const double length = std::hypot(sum[0], sum[1], sum[2]);
-    if (!(length > 0))
-      return;  // a slab whose normal, middle and half extent are 0 holds every
-               // vertex
     for (int k = 0; k < 3; ++k) {
       // A device may flush a subnormal number in one use, but not in another.
       const auto component = static_cast<float>(sum[k] / length);
-      node.normal[k] = std::abs(component) < std::numeric_limits<float>::min() ? 0 : component;
+      node.normal[k] = std::abs(component) >= std::numeric_limits<float>::min() ? component : 0;
     }
+  }
+
+  void fitSlab(gpu::MeshNode& node, uint32_t first, uint32_t count) const {
+    node.slabMiddle = node.slabHalf = 0;
+    if (node.normal[0] == 0 && node.normal[1] == 0 && node.normal[2] == 0) return;
     const auto [least, most] = along(node.normal, 3 * first, 3 * (first + count));
     node.slabMiddle = static_cast<float>(0.5 * (least + most));
     // Rounding errors of the sums are at most 2^-51 of coordinates below 4.
@@ -132,28 +140,24 @@ class PartFitter {
   // The least and the greatest place of corners along a normal.
   std::pair<double, double> along(const float (&normal)[3], size_t first, size_t last) const {
     const auto& [x, y, z] = corners_;
-    const auto at = [&](size_t i) { return normal[0] * x[i] + normal[1] * y[i] + normal[2] * z[i]; };
-    double least = at(first), most = least;
-    size_t i = first + 1;
-    if (last - first >= 2 * kLanes) {
-      const LaneVec<double> n{double{normal[0]}, double{normal[1]}, double{normal[2]}};
-      const auto lanesAt = [&](size_t from) {
-        return n[0] * loaded(&x[from]) + n[1] * loaded(&y[from]) + n[2] * loaded(&z[from]);
-      };
-      Lanes<double> low = lanesAt(first), high = low;
-      for (i = first + kLanes; i + kLanes <= last; i += kLanes) {
-        const Lanes<double> next = lanesAt(i);
-        low = min(next, low);
-        high = max(next, high);
-      }
-      for (int k = 0; k < kLanes; ++k) {
-        least = std::min(least, low[k]);
-        most = std::max(most, high[k]);
-      }
+    const LaneVec<double> n{double{normal[0]}, double{normal[1]}, double{normal[2]}};
+    const auto at = [&](size_t i) { return n[0] * loaded(&x[i]) + n[1] * loaded(&y[i]) + n[2] * loaded(&z[i]); };
+    Lanes<double> low = at(first), high = low;
+    const auto add = [&](const Lanes<double>& next) {
+      low = min(next, low);
+      high = max(next, high);
+    };
+    for (size_t i = first + kLanes; i + kLanes <= last; i += kLanes) add(at(i));
+    int lanes = kLanes;
+    if (last - first >= kLanes) {
+      add(at(last - kLanes));
+    } else {
+      lanes = static_cast<int>(last - first);  // a triangle
     }
-    for (; i < last; ++i) {
-      least = std::min(least, at(i));
-      most = std::max(most, at(i));
+    double least = low[0], most = high[0];
+    for (int k = 1; k < kLanes && k < lanes; ++k) {
+      least = std::min(least, low[k]);
+      most = std::max(most, high[k]);
     }
     return {least, most};
   }
@@ -170,8 +174,7 @@ class PartFitter {
   std::vector<Vector> normals_;                 // of triangles, twice as long as their area
 };
 
-// Fits a tree to the corners of its triangles. Nothing but its construction
-// throws.
+// Fits a tree to the corners of its triangles. Nothing but its construction throws.
 class Fitter {
  public:
   explicit Fitter(MeshTree& tree) : tree_(tree) {
@@ -183,8 +186,7 @@ class Fitter {
     fitters_.assign(std::min<size_t>(threadCount(0), parts_.size()), PartFitter(most));
   }
 
-  // Returns how many nodes a random line through the root meets, by the areas
-  // of their boxes.
+  // Returns how many nodes a random line through the root meets, by the areas of their boxes.
   double fit(const Mesh& mesh) {
     parallelFor(tree_.order.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
       float* to = &tree_.corners[9 * first];
@@ -243,8 +245,7 @@ class Fitter {
   std::vector<PartFitter> fitters_;
 };
 
-// The boxes of a mesh's triangles, for the time of the build, where their
-// corners will be.
+// The boxes of a mesh's triangles, for the time of the build, where their corners will be.
 std::span<BoxedItem> boxesOfTriangles(const Mesh& mesh, std::span<float> corners) {
   void* memory = corners.data();
   size_t bytes = corners.size_bytes();
@@ -252,9 +253,11 @@ std::span<BoxedItem> boxesOfTriangles(const Mesh& mesh, std::span<float> corners
   auto* const boxes = static_cast<BoxedItem*>(std::align(alignof(BoxedItem), count * sizeof(BoxedItem), memory, bytes));
   parallelFor(count, kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t t = first; t < last; ++t) {
-      float points[9];
-      for (int i = 0; i < 9; ++i) points[i] = mesh.normalised(mesh.indices[3 * t + i / 3], i % 3);
-      new (&boxes[t]) BoxedItem(boxAround(points, 3), static_cast<uint32_t>(t));
+      const FloatBox box = boxAround(3, [&](uint32_t i) {
+        const uint32_t vertex = mesh.indices[3 * t + i];
+        return FourFloats{mesh.normalised(vertex, 0), mesh.normalised(vertex, 1), mesh.normalised(vertex, 2)};
+      });
+      new (&boxes[t]) BoxedItem(box, static_cast<uint32_t>(t));
     }
   });
   return {boxes, count};

@@ -79,15 +79,19 @@ def _on_edges(cutter: Profile, edges: np.ndarray, points: np.ndarray) -> np.ndar
     b, c = (away * along[:, :2]).sum(axis=-1), (away**2).sum(axis=-1) - cutter.radius**2
     root = np.sqrt(np.maximum(b * b - a * c, 0))
     low, high = np.clip((-b - root) / a, 0, 1), np.clip((-b + root) / a, 0, 1)
+    seen = (b * b > a * c) & (low < high)
+    point, edge = np.nonzero(seen)
+    start, along, low, high = start[edge], along[edge], low[seen], high[seen]
 
     def value(s):
-        q = start + s[..., None] * along
-        distance = np.minimum(np.linalg.norm(q[..., :2] - points[:, None], axis=-1), cutter.radius)
-        return q[..., 2] - cutter.height(distance)
+        q = start + s[:, None] * along
+        distance = np.minimum(np.linalg.norm(q[:, :2] - points[point], axis=-1), cutter.radius)
+        return q[:, 2] - cutter.height(distance)
 
-    seen = (b * b > a * c) & (low < high)
     for _ in range(80):
         one, two = low + (high - low) / 3, high - (high - low) / 3
         rises = value(one) < value(two)
         low, high = np.where(rises, one, low), np.where(rises, high, two)
-    return np.where(seen, value((low + high) / 2), -np.inf)
+    heights = np.full(seen.shape, -np.inf)
+    heights[seen] = value((low + high) / 2)
+    return heights

@@ -19,6 +19,7 @@ namespace {
 
 constexpr uint32_t kBins = 16;
 constexpr size_t kFew = 16;
+constexpr size_t kMany = 256;
 // Fewer items are not worth a thread, nor parts of their own.
 constexpr size_t kPart = 1u << 13;
 
@@ -99,6 +100,12 @@ class Bins {
     bins_[bin].add(extentOf(item));
     ++counts_[bin];
   }
+  void add(const Bins& other) {
+    for (uint32_t bin = 0; bin < kBins; ++bin) {
+      bins_[bin].add(other.bins_[bin]);
+      counts_[bin] += other.counts_[bin];
+    }
+  }
   void dropEmpty() {
     for (uint32_t bin = 0; bin < kBins; ++bin) used_ &= ~((counts_[bin] == 0 ? 1u : 0u) << bin);
   }
@@ -139,24 +146,55 @@ class Bins {
   uint32_t used_ = 0;  // one bit each
 };
 
-Cut bestCut(std::span<const BoxedItem> items, const Binning& binning) {
-  Bins bins[3];
+using AxisBins = std::array<Bins, 3>;
+
+void clear(AxisBins& bins) {
+  for (Bins& along : bins) {
+    for (uint32_t bin = 0; bin < kBins; ++bin) along.clear(bin);
+  }
+}
+
+void add(AxisBins& bins, const std::array<uint32_t, 3>& at, const BoxedItem& item) {
+  for (int k = 0; k < 3; ++k) bins[k].add(at[k], item);
+}
+
+// For many items, of which a thread bins `part` at a time. Not inline, where it slows few down.
+[[gnu::noinline]] void addAll(AxisBins& bins, std::span<const BoxedItem> items, const Binning& binning, size_t part) {
+  std::mutex merging;
+  parallelFor(items.size(), part, 0, [&](unsigned, size_t first, size_t last) {
+    // Neighbours often share a bin, and adding to it again has to wait.
+    AxisBins even, odd;
+    clear(even);
+    clear(odd);
+    for (size_t i = first; i + 1 < last; i += 2) {
+      const auto here = binning.binsOf(middleOf(items[i])), next = binning.binsOf(middleOf(items[i + 1]));
+      add(even, here, items[i]);
+      add(odd, next, items[i + 1]);
+    }
+    if ((last - first) % 2 != 0) add(even, binning.binsOf(middleOf(items[last - 1])), items[last - 1]);
+    const std::scoped_lock lock(merging);
+    for (int k = 0; k < 3; ++k) {
+      bins[k].add(even[k]);
+      bins[k].add(odd[k]);
+    }
+  });
+}
+
+Cut bestCut(std::span<const BoxedItem> items, const Binning& binning, size_t part) {
+  AxisBins bins;
   if (items.size() <= kFew) {
     std::array<uint32_t, 3> at[kFew];
     for (size_t i = 0; i < items.size(); ++i) {
       at[i] = binning.binsOf(middleOf(items[i]));
       for (int k = 0; k < 3; ++k) bins[k].clear(at[i][k]);
     }
-    for (size_t i = 0; i < items.size(); ++i) {
-      for (int k = 0; k < 3; ++k) bins[k].add(at[i][k], items[i]);
-    }
+    for (size_t i = 0; i < items.size(); ++i) add(bins, at[i], items[i]);
   } else {
-    for (uint32_t bin = 0; bin < kBins; ++bin) {
-      for (Bins& along : bins) along.clear(bin);
-    }
-    for (const BoxedItem& item : items) {
-      const std::array<uint32_t, 3> at = binning.binsOf(middleOf(item));
-      for (int k = 0; k < 3; ++k) bins[k].add(at[k], item);
+    clear(bins);
+    if (items.size() < kMany) {
+      for (const BoxedItem& item : items) add(bins, binning.binsOf(middleOf(item)), item);
+    } else {
+      addAll(bins, items, binning, part);
     }
     for (Bins& along : bins) along.dropEmpty();
   }
@@ -282,7 +320,7 @@ class Builder {
   std::array<Range, 2> split(const Range& range) {
     const std::span<BoxedItem> items = items_.subspan(range.first, range.count);
     const Binning binning(range.middles);
-    const Cut cut = bestCut(items, binning);
+    const Cut cut = bestCut(items, binning, part_);
     Range left{range.first, 0, kNothing}, right{range.first, 0, kNothing};
     size_t first = 0, last = items.size();
     if (cut.axis < 0) {  // all middles coincide: any halves will do

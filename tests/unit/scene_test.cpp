@@ -104,6 +104,20 @@ TEST_CASE("a view of a mesh stays valid, and shows what setPositions sets") {
   CHECK(std::equal(moved.begin(), moved.end(), view.positions.begin()));
 }
 
+TEST_CASE("of the faults of a large mesh, the first is named") {
+  constexpr uint32_t kCount = 300'000;  // more than a thread looks at
+  Scene scene;
+  std::vector<float> positions(3 * size_t{kCount});
+  std::vector<uint32_t> indices(kCount);
+  indices[150'001] = kCount;
+  indices[280'000] = kCount + 5;
+  CHECK_THROWS_WITH(scene.addMesh(positions, indices),
+                    test::Contains("triangle 50000 refers to vertex 300000 of 300000"));
+  positions[3 * 200'000] = NAN;
+  positions[3 * 250'000 + 1] = INFINITY;
+  CHECK_THROWS_WITH(scene.addMesh(positions, indices), test::Contains("vertex 200000 is not finite"));
+}
+
 TEST_CASE("a call that breaks its contract throws and describes the error") {
   Scene scene;
   const MeshId mesh = addBox(scene);

@@ -250,6 +250,8 @@ std::span<BoxedItem> boxesOfTriangles(const Mesh& mesh, std::span<float> corners
   void* memory = corners.data();
   size_t bytes = corners.size_bytes();
   const size_t count = mesh.triangleCount();
+  static_assert(alignof(BoxedItem) - __STDCPP_DEFAULT_NEW_ALIGNMENT__ + sizeof(BoxedItem) <=
+                (9 + MeshTree::kPadding) * sizeof(float));
   auto* const boxes = static_cast<BoxedItem*>(std::align(alignof(BoxedItem), count * sizeof(BoxedItem), memory, bytes));
   parallelFor(count, kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t t = first; t < last; ++t) {

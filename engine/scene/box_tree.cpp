@@ -18,8 +18,8 @@ namespace radar {
 namespace {
 
 constexpr uint32_t kBins = 16;
-constexpr size_t kFew = 16;
-constexpr size_t kMany = 256;
+// So few items use few bins; so many are worth two sets of bins. As measured.
+constexpr size_t kFew = 16, kMany = 256;
 // Fewer items are not worth a thread, nor parts of their own.
 constexpr size_t kPart = 1u << 13;
 
@@ -90,7 +90,7 @@ class Binning {
 // The items of each bin along an axis.
 class Bins {
  public:
-  // Before the first is added to it.
+  // Before items are added to it.
   void clear(uint32_t bin) {
     bins_[bin] = kNothing;
     counts_[bin] = 0;

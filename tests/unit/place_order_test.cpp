@@ -41,7 +41,7 @@ TEST_CASE("answers to a large batch are those to its queries one by one") {
   for (size_t i = 0; i < queries.size(); ++i) {
     Query& query = queries[i];
     if (i % 3 == 0) query.hits = kAllHits;
-    if (i % 5 < 2) query.exclude.resize(i % 5 == 0 ? 40 : 3);
+    if (i % 5 < 2) query.exclude.resize(i % 5 == 0 ? 600 : 3);
     std::iota(query.exclude.begin(), query.exclude.end(), ObjectId(i % 1'000));
     query.ignoreLeaving = i % 7 == 1;
     query.skipOverlapping = i % 7 == 2;

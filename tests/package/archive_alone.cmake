@@ -1,14 +1,16 @@
 # Runs the archive in a root that contains only a driver. Then runs it again without the libraries that the archive
-# contains, too. cmake -DARCHIVE=... -DDRIVER=... -DFOLDER=... -P archive_alone.cmake.
+# contains, too. cmake -DARCHIVE=... -DDRIVER=... -DFOLDER=... -DCACHE=... -P archive_alone.cmake. CACHE: of compiled shaders.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/bare_root.cmake)
 if(chroot_is_refused)
   return()
 endif()
 file(COPY ${ARCHIVE}/ DESTINATION ${FOLDER}/archive)
+file(COPY ${CACHE}/ DESTINATION ${FOLDER}/cache)
 
 function(check expected)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH ${chroot} ${FOLDER} /archive/bin/cyber-radar ${ARGN}
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH MESA_SHADER_CACHE_DIR=/cache
+      ${chroot} ${FOLDER} /archive/bin/cyber-radar ${ARGN}
     OUTPUT_VARIABLE output ERROR_VARIABLE errors RESULT_VARIABLE status)
   if(NOT status EQUAL 0 OR NOT output MATCHES "${expected}")
     message(FATAL_ERROR "cyber-radar ${ARGN}: expected \"${expected}\", got status ${status} and\n${output}${errors}")

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <memory>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -117,7 +120,12 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
     if (listed->closest) listed->closest->at.tier = batch.tier;
     if (listed->exit) listed->exit->tier = batch.tier;
   };
-  std::array<std::optional<Flight>, kFlights> flights;
+  // Pointers, since GCC fills an array of empty optionals with zeros.
+  alignas(Flight) std::byte places[kFlights][sizeof(Flight)];
+  struct Destroy {
+    void operator()(Flight* flight) const { std::destroy_at(flight); }
+  };
+  std::array<std::unique_ptr<Flight, Destroy>, kFlights> flights;
   const auto begin = [&](size_t slot) {
     while (first < last && !flights[slot]) {
       throwIfStopped(batch.stop);
@@ -125,12 +133,12 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
       if (++first < last) prefetch<false>(batch.queries[placeOf(first)]);
       prefetch<true>(batch.results[i]);
       if (Flight::canAnswer(batch.queries[i], batch)) {
-        flights[slot].emplace(batch, i, memory_[slot]);
+        flights[slot].reset(new (places[slot]) Flight(batch, i, memory_[slot]));
       } else {
         answerAlone(i);
       }
     }
-    return flights[slot].has_value();
+    return flights[slot] != nullptr;
   };
   for (bool isUnderWay = true; isUnderWay;) {
     isUnderWay = false;
@@ -139,7 +147,7 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
     for (size_t slot = 0; slot < kFlights; ++slot) {
       if (!begin(slot)) continue;
       isUnderWay = true;
-      walking[count++] = &*flights[slot];
+      walking[count++] = flights[slot].get();
     }
     while (count > 0) {
       for (size_t i = 0; i < count;) {
@@ -151,7 +159,7 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
       }
     }
     for (size_t slot = 0; slot < kFlights; ++slot) {
-      std::optional<Flight>& flight = flights[slot];
+      std::unique_ptr<Flight, Destroy>& flight = flights[slot];
       if (!flight) continue;
       if (flight->object != kNone) {
         search(flight->task, flight->object, flight->finder);

@@ -65,15 +65,17 @@ def read_profile(path):
 
 
 def count(program, queries, profile):
+    stats = profile.with_suffix(".json")
     run(
         *["valgrind", "--tool=callgrind", "--branch-sim=yes", "--cache-sim=yes", f"--callgrind-out-file={profile}"],
         *["--I1=32768,8,64", "--D1=32768,8,64", "--LL=33554432,16,64", "--toggle-collect=radar::cpu::Search::run*"],
-        *[program, "query", queries, "--mode", "reference", "--threads", 1, "--out", profile.with_suffix(".npy")],
+        *[program, "query", queries, "--mode", "reference", "--threads", 1, "--stats", stats],
+        *["--out", profile.with_suffix(".npy")],
     )
     calls, costs = read_profile(profile)
-    answered = sum(number for name, number in calls.items() if name.startswith("radar::cpu::QuerySearch::answer("))
-    if answered == 0:
+    if not any(name.startswith("radar::cpu::QuerySearch::") for name in calls):
         sys.exit(f"{program}: expected symbols of the engine, such as radar::cpu::QuerySearch::answer")
+    answered = json.loads(stats.read_text())["queries"]
     row = {}
     for column, pattern in TESTS.items():
         row[column] = sum(number for name, number in calls.items() if re.match(pattern, name)) / answered

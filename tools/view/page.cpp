@@ -188,8 +188,9 @@ Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries, c
     const std::string number = std::to_string(scenes.size());
     const Instance& sensor = round.sensors[scenes.size()];
     poses.add(sensor.mesh, sensor.worldFromMesh);
-    if (const std::optional<ChainWay>& way = query.chain) {
-      moves[number] = {{"chain", way->chain}, {"from", way->from}, {"to", way->to}, {"base", query.worldFromMesh.m}};
+    if (const std::optional<ChainWay>& chain = query.chain) {
+      moves[number] = {
+          {"chain", chain->chain}, {"from", chain->from}, {"to", chain->to}, {"base", query.worldFromMesh.m}};
     }
     ids.push_back(query.id);
     scenes.push_back(query.scene);

@@ -139,9 +139,10 @@ class PartFitter {
 
   // The least and the greatest place of corners along a normal.
   std::pair<double, double> along(const float (&normal)[3], size_t first, size_t last) const {
-    const auto& [x, y, z] = corners_;
     const LaneVec<double> n{double{normal[0]}, double{normal[1]}, double{normal[2]}};
-    const auto at = [&](size_t i) { return n[0] * loaded(&x[i]) + n[1] * loaded(&y[i]) + n[2] * loaded(&z[i]); };
+    const auto at = [&](size_t i) {
+      return n[0] * loaded(&corners_[0][i]) + n[1] * loaded(&corners_[1][i]) + n[2] * loaded(&corners_[2][i]);
+    };
     Lanes<double> low = at(first), high = low;
     const auto add = [&](const Lanes<double>& next) {
       low = min(next, low);

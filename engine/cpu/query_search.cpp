@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <memory>
-#include <new>
-#include <optional>
 #include <utility>
 
 #include "cpu/clearance.h"
 #include "cpu/closest_approach.h"
 #include "cpu/last_contact.h"
-#include "query/hits.h"
+#include "cpu/query_task.h"
 #include "query/near_walk.h"
 
 namespace radar::cpu {
@@ -20,160 +16,8 @@ namespace radar::cpu {
 namespace {
 
 const Piece kAtRest;
-constexpr size_t kCacheLine = 64;
-
-template <bool toWrite, class Value>
-void prefetch(const Value& value) {
-  const char* const bytes = reinterpret_cast<const char*>(&value);
-  for (size_t at = 0; at < sizeof(Value); at += kCacheLine) __builtin_prefetch(bytes + at, toWrite ? 1 : 0);
-}
 
 }  // namespace
-
-/// A query, prepared for the search.
-struct QuerySearch::Task {
-  const Query& query;
-  const Scene::Impl& scene;
-  const Mesh& sensor;
-  Course course;
-  Translation motion;  ///< past objects that stand
-  MeshPlacement placement;
-  MeshAxes axes;
-  double magnitude = 0;
-  bool mirrored = false;
-
-  Task(const Query& q, const Scene::Impl& s)
-      : query(q),
-        scene(s),
-        sensor(s.meshes[q.mesh]),
-        course(q, s),
-        motion(course.past()),
-        placement(sensor, q.worldFromMesh),
-        axes(placement.linear) {
-    if (!query.ignoreLeaving && !query.skipOverlapping) return;
-    magnitude = placedMagnitude(sensor.farthest, query.worldFromMesh);
-    mirrored = exact::isMirroring(query.worldFromMesh);
-  }
-  Task(const Task&) = delete;
-  Task& operator=(const Task&) = delete;
-
-  /// The motion past an object; stays in place until the next one.
-  const Translation& pastOf(ObjectId id) const { return course.isStep() ? past_.emplace(course.past(id)) : motion; }
-  /// How pairs with an object are judged. Computed only if the query needs it.
-  PairRule ruleFor(ObjectId id) const {
-    if (!query.ignoreLeaving && !query.skipOverlapping) return {};
-    const Object& object = scene.objects[id].object;
-    const double farthest = placedMagnitude(scene.meshes[object.mesh].farthest, object.worldFromMesh);
-    const double slack = query.slack ? *query.slack : exact::defaultSlack(std::max(magnitude, farthest));
-    return {slack, {mirrored, exact::isMirroring(object.worldFromMesh)}};
-  }
-  /// How near pairs matter. Faces that are pressed together may have passed each other by the slack.
-  double reach(const PairRule& rule) const {
-    return std::max(query.clearance, query.ignoreLeaving ? 2 * rule.slack : 0);
-  }
-
- private:
-  mutable std::optional<Translation> past_;
-};
-
-/// A query without a clearance whose answer is under way.
-struct QuerySearch::Flight {
-  size_t place;  ///< in the batch
-  Task task;
-  Participants participants;
-  FirstContact finder;
-  double reach;
-  Walk walk;
-  ObjectId object = kNone;  ///< that the walk has reached
-
-  Flight(const Batch& batch, size_t i, FlightMemory& memory)
-      : place(i),
-        task(batch.queries[i], batch.scene),
-        participants(task.query, task.scene),
-        finder(task.query, task.motion, std::move(memory.touching)),
-        reach(reachOf(finder, task.motion)),
-        walk(task.scene, batch.tree, task.motion, roomyBox(task.query, task.scene), reach, memory.open) {}
-
-  /// Whether a query can take turns with others on one thread.
-  static bool canAnswer(const Query& query, const Batch& batch) {
-    return query.clearance == 0 && !hasLists(query) && !turns(query) && Participants::areFew(query) &&
-           batch.scene.meshes[query.mesh].parts.empty() && batch.tree.inRange();
-  }
-  /// Takes a step of the walk. Returns whether it goes on, since it has not reached an object yet.
-  bool step() {
-    object = walk.step(reach);
-    if (object != kNone && !participants.contain(object)) object = kNone;
-    return object == kNone && !walk.isOver();
-  }
-};
-
-void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
-  stop_ = &batch.stop;
-  const auto placeOf = [&](size_t at) { return batch.order.empty() ? at : batch.order[at]; };
-  const auto answerAlone = [&](size_t i) {
-    const Query& query = batch.queries[i];
-    Listed* const listed = hasLists(query) ? &batch.lists[i] : nullptr;
-    batch.results[i] = answer(query, batch.scene, batch.tree, listed, batch.stop);
-    batch.results[i].tier = batch.tier;
-    if (listed == nullptr) return;
-    for (Result& hit : listed->hits) hit.tier = batch.tier;
-    if (listed->closest) listed->closest->at.tier = batch.tier;
-    if (listed->exit) listed->exit->tier = batch.tier;
-  };
-  // Pointers, since GCC fills an array of empty optionals with zeros.
-  alignas(Flight) std::byte places[kFlights][sizeof(Flight)];
-  struct Destroy {
-    void operator()(Flight* flight) const { std::destroy_at(flight); }
-  };
-  std::array<std::unique_ptr<Flight, Destroy>, kFlights> flights;
-  const auto begin = [&](size_t slot) {
-    while (first < last && !flights[slot]) {
-      throwIfStopped(batch.stop);
-      const size_t i = placeOf(first);
-      if (++first < last) prefetch<false>(batch.queries[placeOf(first)]);
-      prefetch<true>(batch.results[i]);
-      if (Flight::canAnswer(batch.queries[i], batch)) {
-        flights[slot].reset(new (places[slot]) Flight(batch, i, memory_[slot]));
-      } else {
-        answerAlone(i);
-      }
-    }
-    return flights[slot] != nullptr;
-  };
-  for (bool isUnderWay = true; isUnderWay;) {
-    isUnderWay = false;
-    std::array<Flight*, kFlights> walking;
-    size_t count = 0;
-    for (size_t slot = 0; slot < kFlights; ++slot) {
-      if (!begin(slot)) continue;
-      isUnderWay = true;
-      walking[count++] = flights[slot].get();
-    }
-    while (count > 0) {
-      for (size_t i = 0; i < count;) {
-        if (walking[i]->step()) {
-          ++i;
-        } else {
-          walking[i] = walking[--count];
-        }
-      }
-    }
-    for (size_t slot = 0; slot < kFlights; ++slot) {
-      std::unique_ptr<Flight, Destroy>& flight = flights[slot];
-      if (!flight) continue;
-      if (flight->object != kNone) {
-        search(flight->task, flight->object, flight->finder);
-        flight->reach = reachOf(flight->finder, flight->task.motion);
-      } else {
-        Result& result = batch.results[flight->place];
-        result = answerOf(flight->task, flight->finder, {}, nullptr);
-        result.tier = batch.tier;
-        memory_[slot].touching = flight->finder.giveBack();
-        flight.reset();
-      }
-    }
-  }
-}
 
 template <class Finder>
 Result QuerySearch::answerOf(const Task& task, const Finder& finder, std::span<const ObjectId> skipped, Listed* lists) {
@@ -450,5 +294,9 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, const MeshPlacemen
                       fromObject};
   meshes_.run(pair, times.from, visitor, pairs_, *stop_);
 }
+
+template Result QuerySearch::answerOf(const Task& task, const FirstContact& finder, std::span<const ObjectId> skipped,
+                                      Listed* lists);
+template void QuerySearch::search(const Task& task, ObjectId id, FirstContact& finder);
 
 }  // namespace radar::cpu

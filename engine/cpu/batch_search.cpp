@@ -94,13 +94,12 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
       isUnderWay = true;
       walking[count++] = flights[slot].get();
     }
-    while (count > 0) {
-      for (size_t i = 0; i < count;) {
-        if (walking[i]->step()) {
-          ++i;
-        } else {
-          walking[i] = walking[--count];
-        }
+    // Without an inner loop, whose end nothing could foresee.
+    for (size_t i = 0; count > 0; i &= size_t{0} - (i < count)) {
+      if (walking[i]->step()) {
+        ++i;
+      } else {
+        walking[i] = walking[--count];
       }
     }
     for (size_t slot = 0; slot < kFlights; ++slot) {

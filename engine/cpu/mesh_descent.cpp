@@ -197,7 +197,7 @@ void descend(const MeshTree& treeA, const MeshTree& treeB, const NodeOpener& ope
   OpenPair* top = open;
   *top++ = {static_cast<float>((1 - 0x1p-22) * near), 0, 0};
   const auto areLeaves = [&](const OpenPair& pair) {
-    return isLeaf(treeA.nodes[pair.a]) && isLeaf(treeB.nodes[pair.b]);
+    return (treeA.nodes[pair.a].link & treeB.nodes[pair.b].link & gpu::kLinkLeaf) != 0;
   };
   LeafPairs leaves;
   NodeOpener::Parts parts;
@@ -218,7 +218,7 @@ void descend(const MeshTree& treeA, const MeshTree& treeB, const NodeOpener& ope
     const gpu::MeshNode &a = treeA.nodes[placeA], &b = treeB.nodes[placeB];
     if (test.keepApart(a, b)) continue;
     // To decide a pair of triangles may take as long as to test very many nodes.
-    const bool isPairOfLeaves = isLeaf(a) && isLeaf(b);
+    const bool isPairOfLeaves = (a.link & b.link & gpu::kLinkLeaf) != 0;
     if (isPairOfLeaves || ++visits % kVisits == 0) throwIfStopped(stop);
     if (isPairOfLeaves) {
       leaves.add(a, b, from);

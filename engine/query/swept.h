@@ -55,12 +55,14 @@ struct OpenNode {
 /// Memory of this thread for the nodes that a walk has yet to visit.
 std::vector<OpenNode>& openNodes();
 
-/// Prefetches what is read first when the node is next: its child nodes, or the mask of its object.
+/// Prefetches what is read first when the node is next: its child nodes, or the mask of its object. Nothing could
+/// foresee a branch between the two.
 inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, const Scene::Impl& scene) {
-  const uint32_t item = node.link & gpu::kLinkItem;
-  const void* next = nodes + item;
-  if ((node.link & gpu::kLinkLeaf) != 0) next = &scene.objects[item].object.mask;
-  __builtin_prefetch(next);
+  const uintptr_t item = node.link & gpu::kLinkItem, isLeaf = uintptr_t{0} - ((node.link & gpu::kLinkLeaf) != 0);
+  const uintptr_t inner = reinterpret_cast<uintptr_t>(nodes) + item * sizeof(*nodes),
+                  leaf = reinterpret_cast<uintptr_t>(&scene.objects.data()->object.mask) +
+                         item * sizeof(Scene::Impl::ObjectSlot);
+  __builtin_prefetch(reinterpret_cast<const void*>(inner ^ ((inner ^ leaf) & isLeaf)));
 }
 /// Prefetches the lines beside that of the mask.
 inline void prefetch(const Scene::Impl::ObjectSlot& object) {
@@ -81,7 +83,7 @@ class Walk {
     const size_t most = size_t{tree.depth()} + 2;
     if (memory.size() < most) memory.resize(most);
     bottom_ = top_ = memory.data();
-    if (!tree.nodes().empty()) push(meets_(nodes_[0], nodes_[0])[0], nodes_[0], reach);
+    if (!tree.nodes().empty()) push(meets_(nodes_[0], nodes_[0])[0], nodes_[0].link, reach);
   }
 
   bool isOver() const { return top_ == bottom_; }
@@ -100,17 +102,18 @@ class Walk {
       detail::prefetch(left, nodes_, scene_);
       detail::prefetch(right, nodes_, scene_);
       const TwoDoubles near = meets_(left, right);
-      const bool leftFirst = near[0] <= near[1];
-      push(leftFirst ? near[1] : near[0], leftFirst ? right : left, reach);
-      push(leftFirst ? near[0] : near[1], leftFirst ? left : right, reach);
+      // Without a branch, likewise.
+      const uint32_t swapped = (left.link ^ right.link) & (0 - uint32_t{near[0] > near[1]});
+      push(std::max(near[0], near[1]), right.link ^ swapped, reach);
+      push(std::min(near[0], near[1]), left.link ^ swapped, reach);
       break;
     }
     return kNone;
   }
 
  private:
-  void push(double near, const gpu::ObjectNode& node, double reach) {
-    *top_ = {near, node.link};
+  void push(double near, uint32_t link, double reach) {
+    *top_ = {near, link};
     top_ += near <= reach;
   }
 

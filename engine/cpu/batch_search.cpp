@@ -41,8 +41,8 @@ struct QuerySearch::Flight {
 
   /// Whether a query can take turns with others on one thread.
   static bool canAnswer(const Query& query, const Batch& batch) {
-    return query.clearance == 0 && !hasLists(query) && !turns(query) && Participants::areFew(query) &&
-           batch.scene.meshes[query.mesh].parts.empty() && batch.tree.inRange();
+    return query.clearance == 0 && !query.skipOverlapping && !query.closest && !query.exit && !turns(query) &&
+           Participants::areFew(query) && batch.scene.meshes[query.mesh].parts.empty() && batch.tree.inRange();
   }
   /// Takes a step of the walk. Returns whether it goes on, since it has not reached an object yet.
   bool step() {
@@ -55,11 +55,11 @@ struct QuerySearch::Flight {
 void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
   stop_ = &batch.stop;
   const auto placeOf = [&](size_t at) { return batch.order.empty() ? at : batch.order[at]; };
-  const auto answerAlone = [&](size_t i) {
-    const Query& query = batch.queries[i];
-    Listed* const listed = hasLists(query) ? &batch.lists[i] : nullptr;
-    batch.results[i] = answer(query, batch.scene, batch.tree, listed, batch.stop);
+  const auto listedOf = [&](size_t i) { return hasLists(batch.queries[i]) ? &batch.lists[i] : nullptr; };
+  const auto keep = [&](size_t i, const Result& result) {
+    batch.results[i] = result;
     batch.results[i].tier = batch.tier;
+    Listed* const listed = listedOf(i);
     if (listed == nullptr) return;
     for (Result& hit : listed->hits) hit.tier = batch.tier;
     if (listed->closest) listed->closest->at.tier = batch.tier;
@@ -80,7 +80,7 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
       if (Flight::canAnswer(batch.queries[i], batch)) {
         flights[slot].reset(new (places[slot]) Flight(batch, i, memory_[slot]));
       } else {
-        answerAlone(i);
+        keep(i, answer(batch.queries[i], batch.scene, batch.tree, listedOf(i), batch.stop));
       }
     }
     return flights[slot] != nullptr;
@@ -107,11 +107,10 @@ void QuerySearch::answer(const Batch& batch, size_t first, size_t last) {
       if (!flight) continue;
       if (flight->object != kNone) {
         search(flight->task, flight->object, flight->finder);
+        flight->finder.endObject();
         flight->reach = reachOf(flight->finder, flight->task.motion);
       } else {
-        Result& result = batch.results[flight->place];
-        result = answerOf(flight->task, flight->finder, {}, nullptr);
-        result.tier = batch.tier;
+        keep(flight->place, answerOf(flight->task, flight->finder, {}, listedOf(flight->place)));
         memory_[slot].touching = flight->finder.giveBack();
         flight.reset();
       }

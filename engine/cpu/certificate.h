@@ -30,7 +30,7 @@ class Certificate {
   FeatureNumber acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, bool ofA);
   FeatureNumber acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, int i, int k);
 
-  exact::Event event_{};
+  exact::Event event_;
   int side_ =
       0;  // of the motion, along the cross product of the event's edges or of its face; 0: there is no event yet
 };

@@ -49,7 +49,7 @@ void FirstContact::endObject() {
   if (query_.hits == 1 || !earliest_.found()) return;
   latest_ = std::min(motion_->end, addNearest(nearest_, query_.hits, std::move(earliest_)));
   atStart_ = false;
-  earliest_ = exact::EarliestContact(*motion_);
+  earliest_.clear();
 }
 
 Result FirstContact::first() const {

@@ -20,6 +20,11 @@ class EarliestContact {
     touching_.clear();
   }
   std::vector<TouchingPair> giveBack() { return std::move(touching_); }
+  /// Forgets all pairs.
+  void clear() {
+    found_ = overlap_ = false;
+    touching_.clear();
+  }
 
   /// The motion of the pairs that are considered next: in a step, each object has its own.
   void setMotion(const Translation& motion) { motion_ = &motion; }
@@ -90,8 +95,8 @@ class EarliestContact {
   bool found_ = false;
   bool overlap_ = false;
   PairName name_;
-  PlacedPair pair_{};
-  Event event_{};
+  PlacedPair pair_;
+  Event event_;
   Features features_;
   Span span_;
   bool isSharp_ = false;

@@ -133,7 +133,8 @@ std::optional<Approach> PathContact::bracket(const PairPath& pair, double depth)
   double from = from_, step = to_ - from_;
   PairPath::Places begin = pair.at(from);
   const auto found = [&](double s) { return Approach{lo, s, pair.separationAt(lo)}; };
-  while (from <= std::min(to_, latest())) {
+  // What may touch in time is followed to the end: its bracket must not depend on which pairs came before.
+  while (from <= to_ && (from <= latest() || !std::isinf(lo))) {
     const double end = std::min(from + step, to_), length = end - from;
     const PairPath::Places last = pair.at(end);
     const TimeSpan times = pair.possible(begin, last, length, depth);

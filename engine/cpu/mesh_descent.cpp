@@ -12,6 +12,11 @@
 #include "cpu/node_opener.h"
 #include "cpu/path_test.h"
 
+#ifndef RADAR_DESCENT
+#define RADAR_DESCENT commonDescent
+#define RADAR_INSTRUCTIONS "common"
+#endif
+
 namespace radar::cpu {
 
 inline namespace RADAR_WIDTH {
@@ -285,10 +290,9 @@ void searchPath(const PathPair& pair, PathContact& contact, OpenPair* open, uint
 
 }  // namespace RADAR_WIDTH
 
-template <>
-const MeshDescent& meshDescent<kLanes>() {
-  static constexpr MeshDescent kDescent{kLanes, searchStraight, searchPath};
-  return kDescent;
+const MeshDescent* RADAR_DESCENT() {
+  static constexpr MeshDescent kDescent{RADAR_INSTRUCTIONS, searchStraight, searchPath};
+  return &kDescent;
 }
 
 }  // namespace radar::cpu

@@ -6,20 +6,18 @@
 #if defined(__AVX2__) && defined(__OPTIMIZE__)
 
 #define RADAR_LANES 8
-#define RADAR_WIDTH lanes8
+#define RADAR_WIDTH lanes8_avx2
+#define RADAR_DESCENT avx2Descent
+#define RADAR_INSTRUCTIONS "AVX2"
 
 #include "cpu/leaf_test.cpp"
 #include "cpu/mesh_descent.cpp"
 #include "cpu/node_test.cpp"
 #include "cpu/path_test.cpp"
 
-const radar::cpu::MeshDescent* radar::cpu::eightLanes() {
-  return &meshDescent<8>();
-}
-
 #else
 
-const radar::cpu::MeshDescent* radar::cpu::eightLanes() {
+const radar::cpu::MeshDescent* radar::cpu::avx2Descent() {
   return nullptr;
 }
 

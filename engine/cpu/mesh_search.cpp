@@ -8,28 +8,36 @@ namespace radar::cpu {
 
 namespace {
 
-const MeshDescent& widestHere() {
+/// Those that this processor can run, the fastest last.
+std::vector<const MeshDescent*> descentsHere() {
+  std::vector<const MeshDescent*> descents{commonDescent()};
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2") && eightLanes() != nullptr) return *eightLanes();
+  const auto add = [&](bool isSupported, const MeshDescent* descent) {
+    if (isSupported && descent != nullptr) descents.push_back(descent);
+  };
+  add(__builtin_cpu_supports("avx2"), avx2Descent());
+  add(__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"), avx512Descent());
 #endif
-  return meshDescent<4>();
+  return descents;
 }
 
 std::atomic<const MeshDescent*>& inUse() {
-  static std::atomic<const MeshDescent*> descent{&widestHere()};
+  static std::atomic<const MeshDescent*> descent{descentsHere().back()};
   return descent;
 }
 
 }  // namespace
 
-std::vector<int> searchWidths() {
-  std::vector<int> widths{4};
-  if (widestHere().lanes > 4) widths.push_back(widestHere().lanes);
-  return widths;
+std::vector<std::string> searchInstructions() {
+  std::vector<std::string> names;
+  for (const MeshDescent* descent : descentsHere()) names.emplace_back(descent->instructions);
+  return names;
 }
 
-void setSearchWidth(int lanes) {
-  inUse() = lanes == 4 ? &meshDescent<4>() : &widestHere();
+void setSearchInstructions(const std::string& name) {
+  for (const MeshDescent* descent : descentsHere()) {
+    if (descent->instructions == name) inUse() = descent;
+  }
 }
 
 PathPair pairOf(const PlacedMesh& body, const PathPart& part, const PlacedMesh& object, ObjectId name,

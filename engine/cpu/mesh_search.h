@@ -2,6 +2,7 @@
 // trees, nearest first.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "cpu/first_contact.h"
@@ -74,9 +75,10 @@ class MeshSearch {
   std::vector<OpenPair> open_;
 };
 
-/// How many lanes a search may have on this processor, ascending; it takes the most. No answer depends on it.
-std::vector<int> searchWidths();
-/// For tests: of all searches from now on. `lanes` is one of searchWidths().
-void setSearchWidth(int lanes);
+/// The sets of instructions for which searches are compiled and that this processor has: searches use the last. No
+/// answer depends on it.
+std::vector<std::string> searchInstructions();
+/// For tests: of all searches from now on. `name` is one of searchInstructions().
+void setSearchInstructions(const std::string& name);
 
 }  // namespace radar::cpu

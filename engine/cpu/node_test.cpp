@@ -24,21 +24,6 @@ void cut(Times<Real>& times, const Lanes<Real>& middle, const Lanes<Real>& half)
   times.to = min(times.to, middle + half);
 }
 
-/// Loads floats 4 * place to 4 * place + 3 of each node; out[i] has the i-th of them, one lane per node.
-void load(const NodeLanes& nodes, int place, Floats (&out)[4]) {
-  static_assert(sizeof(gpu::MeshNode) == 3 * sizeof(FourFloats));
-  Floats rows[4];
-  for (int i = 0; i < 4; ++i) {
-    FourFloats fours[kLanes / 4];
-    for (int k = 0; k < kLanes / 4; ++k) {
-      const char* const node = reinterpret_cast<const char*>(nodes[4 * k + i]);
-      std::memcpy(&fours[k], node + place * sizeof(FourFloats), sizeof(FourFloats));
-    }
-    rows[i] = joined(fours);
-  }
-  transpose(rows, out);
-}
-
 }  // namespace
 
 template <class Real>

@@ -29,6 +29,21 @@ struct Times {
 
 using NodeLanes = std::array<const gpu::MeshNode*, kLanes>;
 
+/// Loads floats 4 * place to 4 * place + 3 of each node; out[i] has the i-th of them, one lane per node.
+inline void load(const NodeLanes& nodes, int place, Floats (&out)[4]) {
+  static_assert(sizeof(gpu::MeshNode) == 3 * sizeof(FourFloats));
+  Floats rows[4];
+  for (int i = 0; i < 4; ++i) {
+    FourFloats fours[kLanes / 4];
+    for (int k = 0; k < kLanes / 4; ++k) {
+      const char* const node = reinterpret_cast<const char*>(nodes[4 * k + i]);
+      std::memcpy(&fours[k], node + place * sizeof(FourFloats), sizeof(FourFloats));
+    }
+    rows[i] = joined(fours);
+  }
+  transpose(rows, out);
+}
+
 /// Tests nodes of a mesh A, in motion, and of a mesh B.
 template <class Real>
 class NodeTest {

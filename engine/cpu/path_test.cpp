@@ -25,15 +25,11 @@ struct PathTest::Boxes {
   LaneVec<double> centre, half;
 
   explicit Boxes(const NodeLanes& nodes) {
-    for (int k = 0; k < 3; ++k) {
-      const auto lanes = [&](const auto& of) {
-        Floats out;
-        for (int i = 0; i < kLanes; ++i) out[i] = of(*nodes[i]);
-        return out;
-      };
-      centre[k] = lanes([k](const gpu::MeshNode& node) { return node.centre[k]; });
-      half[k] = lanes([k](const gpu::MeshNode& node) { return node.halfExtent[k]; });
-    }
+    Floats lanes[4];
+    load(nodes, 0, lanes);
+    for (int k = 0; k < 3; ++k) centre[k] = lanes[k];
+    load(nodes, 1, lanes);
+    for (int k = 0; k < 3; ++k) half[k] = lanes[k];
   }
 };
 

@@ -6,6 +6,10 @@
 #include <cstring>
 #include <utility>
 
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
 #ifndef RADAR_LANES
 #define RADAR_LANES 4
 #define RADAR_WIDTH lanes4
@@ -41,6 +45,37 @@ unsigned signsOf(const Vector& x) {
   unsigned bits = 0;
   for (unsigned i = 0; i < sizeof(x) / sizeof(x[0]); ++i) bits |= unsigned{x[i] < 0} << i;
   return bits;
+#endif
+}
+
+/// A vector's numbers as doubles, and those doubles rounded to nearest. By instructions for it: GCC makes conversions
+/// of vectors whose lengths differ one by one.
+inline void widen(const Floats& x, HalfOfDoubles& low, HalfOfDoubles& high) {
+#if RADAR_LANES == 8
+  low = _mm256_cvtps_pd(_mm256_castps256_ps128(x));
+  high = _mm256_cvtps_pd(_mm256_extractf128_ps(x, 1));
+#elif defined(__SSE2__)
+  low = _mm_cvtps_pd(x);
+  high = _mm_cvtps_pd(_mm_movehl_ps(x, x));
+#else
+  for (int i = 0; i < kLanes / 2; ++i) {
+    low[i] = x[i];
+    high[i] = x[kLanes / 2 + i];
+  }
+#endif
+}
+inline Floats narrowed(const HalfOfDoubles& low, const HalfOfDoubles& high) {
+#if RADAR_LANES == 8
+  return _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low));
+#elif defined(__SSE2__)
+  return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
+#else
+  Floats out;
+  for (int i = 0; i < kLanes / 2; ++i) {
+    out[i] = static_cast<float>(low[i]);
+    out[kLanes / 2 + i] = static_cast<float>(high[i]);
+  }
+  return out;
 #endif
 }
 
@@ -88,22 +123,10 @@ struct Lanes<double> {
     std::memcpy(&low, x, sizeof(low));
     std::memcpy(&high, x + kLanes / 2, sizeof(high));
   }
-  Lanes(Floats x) {  // NOLINT
-    for (int i = 0; i < kLanes / 2; ++i) {
-      low[i] = x[i];
-      high[i] = x[kLanes / 2 + i];
-    }
-  }
+  Lanes(Floats x) { widen(x, low, high); }  // NOLINT
   double operator[](int i) const { return i < kLanes / 2 ? low[i] : high[i - kLanes / 2]; }
   /// Rounded to nearest.
-  Floats floats() const {
-    Floats out;
-    for (int i = 0; i < kLanes / 2; ++i) {
-      out[i] = static_cast<float>(low[i]);
-      out[kLanes / 2 + i] = static_cast<float>(high[i]);
-    }
-    return out;
-  }
+  Floats floats() const { return narrowed(low, high); }
 
   friend Lanes operator+(const Lanes& x, const Lanes& y) { return {x.low + y.low, x.high + y.high}; }
   friend Lanes operator-(const Lanes& x, const Lanes& y) { return {x.low - y.low, x.high - y.high}; }

@@ -26,8 +26,8 @@ WORKLOADS = {
 # What is called for each test, of as many pairs of nodes, or of triangles, as there are lanes; and for each pair of triangles
 # that is decided: how its name begins.
 TESTS = {
-    "nodes": r"radar::cpu::lanes(\d+)::NodeTest<\w+>::operator\(\)",
-    "leaves": r"radar::cpu::lanes(\d+)::LeafTest<\w+>::timesOf",
+    "nodes": r"radar::cpu::lanes\w+::NodeTest<\w+>::operator\(\)",
+    "leaves": r"radar::cpu::lanes\w+::LeafTest<\w+>::timesOf",
     "decided": r"radar::cpu::FirstContact::consider\(",
 }
 COSTS = {

@@ -1,0 +1,23 @@
+// As mesh_descent_avx2.cpp, for processors that have AVX-512 for short vectors. Its 32 registers and masks are what is
+// used: sixteen lanes test fewer pairs of nodes at a time that matter, and were slower.
+#include "cpu/mesh_descent.h"
+
+#if defined(__AVX512VL__) && defined(__OPTIMIZE__)
+
+#define RADAR_LANES 8
+#define RADAR_WIDTH lanes8_avx512
+#define RADAR_DESCENT avx512Descent
+#define RADAR_INSTRUCTIONS "AVX-512"
+
+#include "cpu/leaf_test.cpp"
+#include "cpu/mesh_descent.cpp"
+#include "cpu/node_test.cpp"
+#include "cpu/path_test.cpp"
+
+#else
+
+const radar::cpu::MeshDescent* radar::cpu::avx512Descent() {
+  return nullptr;
+}
+
+#endif

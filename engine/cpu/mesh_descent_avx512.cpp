@@ -1,5 +1,5 @@
-// As mesh_descent_avx2.cpp, for processors that have AVX-512 for short vectors. Its 32 registers and masks are what is
-// used: sixteen lanes test fewer pairs of nodes at a time that matter, and were slower.
+// As mesh_descent_avx2.cpp, for processors that have AVX-512 for short vectors: it has 32 registers, and masks. Sixteen
+// lanes were slower, since more of the pairs of nodes that they test do not matter.
 #include "cpu/mesh_descent.h"
 
 #if defined(__AVX512VL__) && defined(__OPTIMIZE__)
